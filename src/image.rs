@@ -330,6 +330,21 @@ pub(crate) fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item
     [left, right, above, below].into_iter().flatten()
 }
 
+/// A set of pixels and all that join it, in a picture of `count` pixels: `joins` is asked of pixels and those beside them, and
+/// says yes once for each that is to be added.
+pub(crate) fn flooded(
+    mut set: Vec<usize>,
+    [width, count]: [usize; 2],
+    mut joins: impl FnMut(usize, usize) -> bool,
+) -> Vec<usize> {
+    let mut next = 0;
+    while let Some(&i) = set.get(next) {
+        next += 1;
+        set.extend(beside(i, width, count).filter(|&k| joins(i, k)));
+    }
+    set
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

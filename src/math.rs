@@ -45,6 +45,14 @@ pub(crate) fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
+/// The values that are equal to the most common one, which become neighbours; `None` of no values. Of equally common ones the
+/// largest is taken, whatever the order.
+pub(crate) fn most_common<T: Ord>(values: &mut [T]) -> Option<&[T]> {
+    values.sort_unstable();
+    let runs = values.chunk_by(|a, b| a == b);
+    runs.max_by_key(|run| run.len())
+}
+
 /// The point of the segment from `a` to `b` that is nearest to `p`, and its squared distance.
 pub(crate) fn nearest_on_segment(p: [f32; 2], [a, b]: [[f32; 2]; 2]) -> ([f32; 2], f32) {
     let axis = [b[0] - a[0], b[1] - a[1]];

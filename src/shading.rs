@@ -17,18 +17,10 @@ pub(crate) use stack::stacked;
 /// A block is met by a gradient if no channel is farther from it than this. A guess.
 pub(crate) const NEAR: f32 = 3.0 / 255.0;
 
-/// Fit of a gradient. All of it is a guess.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ShadeFit {
-    /// Below this share of the blocks nothing is refined any further.
-    pub(crate) hopeless_share: f32,
-    /// Most stops.
-    pub(crate) stops: usize,
-    /// Number of times that a shade is fitted to the blocks that the last one has met.
-    pub(crate) rounds: usize,
-    /// One more stop has to remove this share of the squared error.
-    pub(crate) stop_share: f64,
-}
+/// A gradient that meets less than this share of the blocks is not refined any further. A guess.
+const HOPELESS_SHARE: f32 = 0.1;
+/// Tolerances of the fits of a gradient, in units of [`NEAR`], each to the blocks that the last fit has met. A guess.
+const ROUNDS: [f32; 4] = [1.0; 4];
 
 /// Premultiplied colour, and opacity.
 pub(crate) type Value = [f32; 4];
@@ -49,6 +41,43 @@ pub(crate) struct Blocks {
     /// The corner of the part with the least coordinates, and its size, px.
     pub(crate) low: [f64; 2],
     pub(crate) size: [f64; 2],
+}
+
+/// Mean offset along an axis, number and mean value of a group of blocks.
+#[derive(Debug, Clone, Copy, Default)]
+struct Group {
+    offset: f64,
+    count: f64,
+    value: [f64; 4],
+}
+
+/// A place between the offsets of two neighbours: their indices, which are equal beyond the first and the last, and the part of
+/// the way from one to the other.
+#[derive(Debug, Clone, Copy)]
+struct Between {
+    ends: [usize; 2],
+    part: f64,
+}
+
+impl Between {
+    /// The place of `at` among rising offsets, of which there is one at least.
+    fn of(offsets: &[f64], at: f64) -> Self {
+        let after = offsets.partition_point(|&offset| offset <= at);
+        let ends = [after.saturating_sub(1), after.min(offsets.len() - 1)];
+        let [from, to] = ends.map(|i| offsets[i]);
+        let part = if to > from {
+            (at - from) / (to - from)
+        } else {
+            0.0
+        };
+        Self { ends, part }
+    }
+
+    /// The value here, linear between the values of the neighbours.
+    fn value(self, of: impl Fn(usize) -> f64) -> f64 {
+        let [from, to] = self.ends.map(of);
+        from + self.part * (to - from)
+    }
 }
 
 /// Likeness of blocks to a shade.
@@ -90,17 +119,41 @@ impl Blocks {
         (blocks, side)
     }
 
+    /// The blocks that take part.
+    fn taking_part(&self) -> impl Iterator<Item = &Block> {
+        self.all.iter().filter(|block| block.weight > 0.0)
+    }
+
+    /// The blocks that take part, in at most so many groups of similar offsets along an axis, by rising offset.
+    fn grouped(&self, axis: Axis, most: usize) -> Vec<Group> {
+        let mut groups = vec![Group::default(); most];
+        for block in self.taking_part() {
+            let offset = axis.offset(block.center).clamp(0.0, 1.0);
+            let group = &mut groups[((offset * most as f64) as usize).min(most - 1)];
+            group.count += 1.0;
+            group.offset += offset;
+            let sums = group.value.iter_mut().zip(block.value);
+            sums.for_each(|(sum, v)| *sum += f64::from(v));
+        }
+        groups.retain(|group| group.count > 0.0);
+        for group in &mut groups {
+            group.offset /= group.count;
+            group.value = group.value.map(|sum| sum / group.count);
+        }
+        groups
+    }
+
     /// The linear or radial shade that meets most blocks, if the blocks seem to lie along one.
-    pub(crate) fn best_shade(&self, fit: &ShadeFit) -> Option<(Shade, Met)> {
-        self.best_of(fit, &vec![1.0; fit.rounds])
+    pub(crate) fn best_shade(&self) -> Option<(Shade, Met)> {
+        self.best_of(&ROUNDS)
     }
 
     /// As [`Self::best_shade`], fitted so many times, each time to the blocks that the last shade has met within this factor of
     /// what is near.
-    fn best_of(&self, fit: &ShadeFit, factors: &[f32]) -> Option<(Shade, Met)> {
+    fn best_of(&self, factors: &[f32]) -> Option<(Shade, Met)> {
         // Fit both kinds: no cheap test says which one a picture has. The share of blocks that are met decides.
         let candidates = [axis::Kind::Linear, axis::Kind::Radial];
-        let candidates = candidates.map(|kind| self.shade(kind, fit, factors));
+        let candidates = candidates.map(|kind| self.shade(kind, factors));
         let met = |shade: Shade| {
             let met = self.met(NEAR, |block| premultiplied(&shade, block.center));
             (shade, met)
@@ -110,7 +163,7 @@ impl Blocks {
     }
 
     /// The shade of this kind, if there is an axis and the blocks seem to lie along it.
-    fn shade(&self, kind: axis::Kind, fit: &ShadeFit, factors: &[f32]) -> Option<Shade> {
+    fn shade(&self, kind: axis::Kind, factors: &[f32]) -> Option<Shade> {
         let mut blocks = Self {
             all: self.all.clone(),
             ..*self
@@ -120,10 +173,10 @@ impl Blocks {
             let near = factor * NEAR;
             // Axis, then stops along it, both from the blocks that the last round has met; the first round takes all.
             let axis = blocks.seen(axis::of(&blocks, kind)?);
-            let shade = profile::of(&blocks, axis, fit)?;
+            let shade = profile::of(&blocks, axis)?;
             // Judge all blocks, so that one that the last round has dropped may come back.
             let met = self.met(near, |block| premultiplied(&shade, block.center));
-            if met.share < fit.hopeless_share {
+            if met.share < HOPELESS_SHARE {
                 return None;
             }
             // Blocks off the shade are things in front of it. Without them the next fit is closer to the shade behind.
@@ -142,8 +195,8 @@ impl Blocks {
             share: 0.0,
             error: 0.0,
         };
-        let count = self.all.iter().filter(|block| block.weight > 0.0).count() as f32;
-        for block in self.all.iter().filter(|block| block.weight > 0.0) {
+        let count = self.taking_part().count() as f32;
+        for block in self.taking_part() {
             let value = value(block);
             if is_near(near, block, value) {
                 met.share += 1.0 / count;
@@ -187,10 +240,10 @@ impl Blocks {
     fn seen(&self, axis: Axis) -> Axis {
         // About a block.
         const NEAR: f64 = 0.03;
-        let taking_part = self.all.iter().filter(|block| block.weight > 0.0);
         // The range of offsets in which there are blocks.
         let (mut first, mut last) = (1.0_f64, 0.0_f64);
-        for offset in taking_part.map(|block| axis.offset(block.center).clamp(0.0, 1.0)) {
+        let offset = |block: &Block| axis.offset(block.center).clamp(0.0, 1.0);
+        for offset in self.taking_part().map(offset) {
             (first, last) = (first.min(offset), last.max(offset));
         }
         let first = if first > NEAR { first } else { 0.0 };

@@ -1,6 +1,6 @@
 //! The colours of a picture that has few.
 
-use crate::image::Image;
+use crate::image::{Image, flooded};
 
 /// Red, green, blue and alpha, 0 or 1; all are 0 where a picture is transparent.
 pub(super) type Color = [f32; 4];
@@ -63,17 +63,10 @@ impl Labels {
             if std::mem::replace(&mut is_seen[first], true) {
                 continue;
             }
-            let mut shape = vec![first];
-            let mut next = 0;
-            while let Some(&pixel) = shape.get(next) {
-                next += 1;
-                for other in self.beside(pixel) {
-                    let is_same = self.of[other] == self.of[pixel];
-                    if is_same && !std::mem::replace(&mut is_seen[other], true) {
-                        shape.push(other);
-                    }
-                }
-            }
+            let size = [self.width, self.of.len()];
+            let shape = flooded(vec![first], size, |pixel, other| {
+                self.of[other] == self.of[pixel] && !std::mem::replace(&mut is_seen[other], true)
+            });
             largest = shape.len().max(largest);
             if shape.len() <= most {
                 specks += shape.len();
@@ -82,18 +75,6 @@ impl Labels {
         }
         let others = (self.of.len() - largest).max(1);
         (is_speck, specks as f32 / others as f32)
-    }
-
-    /// The pixels beside one.
-    fn beside(&self, pixel: usize) -> impl Iterator<Item = usize> + use<> {
-        let (x, width) = (pixel % self.width, self.width);
-        let sides = [
-            (x > 0).then(|| pixel - 1),
-            (x + 1 < width).then_some(pixel + 1),
-            pixel.checked_sub(width),
-            Some(pixel + width).filter(|below| *below < self.of.len()),
-        ];
-        sides.into_iter().flatten()
     }
 
     /// The label at a place; that of the border outside of the picture.

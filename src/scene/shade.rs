@@ -107,11 +107,7 @@ impl Shade {
                 radius: grid.round(radius),
             },
         };
-        let length = match axis {
-            Axis::Linear { from, to } => (to - from).hypot(),
-            Axis::Radial { radius, .. } => radius,
-        };
-        if length < MIN_LENGTH {
+        if axis.length() < MIN_LENGTH {
             return refuse("an axis shorter than a px");
         }
         let stops = stops.iter().map(ShadeStop::rounded).collect();
@@ -185,6 +181,14 @@ impl Axis {
                 (point - from).dot(along) / along.hypot2()
             }
             Self::Radial { center, radius } => (point - center).hypot() / radius,
+        }
+    }
+
+    /// The distance that has offset 1.
+    pub(crate) fn length(&self) -> f64 {
+        match *self {
+            Self::Linear { from, to } => (to - from).hypot(),
+            Self::Radial { radius, .. } => radius,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Block, Blocks, NEAR};
+use super::{Between, Block, Blocks, NEAR};
 use crate::math::{self, Point, Vec2};
 use crate::scene::Axis;
 
@@ -23,7 +23,7 @@ const LEVEL: f32 = 1.1;
 pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
     match kind {
         Kind::Linear => {
-            let angle = direction(blocks, NEAR)?;
+            let angle = direction(blocks)?;
             // The closed form fits slopes. A search then fits the values themselves.
             let cost = |angle: f64| spread(blocks, line(blocks, angle));
             // A degree, down to a hundredth of one.
@@ -34,7 +34,7 @@ pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
             Some(line(blocks, if is_straight { straight } else { angle }))
         }
         Kind::Radial => {
-            let center = center(blocks, NEAR)?;
+            let center = center(blocks)?;
             // From a fiftieth of the longer side down to a twentieth of a pixel.
             let step = blocks.size[0].max(blocks.size[1]) / 50.0;
             let [x, y] = math::search([center.x, center.y], step, 0.05, |[x, y]| {
@@ -46,8 +46,8 @@ pub(super) fn of(blocks: &Blocks, kind: Kind) -> Option<Axis> {
 }
 
 /// The angle along which values change most: of the largest eigenvector of Σ g gᵀ over all gradients g.
-fn direction(blocks: &Blocks, near: f32) -> Option<f64> {
-    let [xx, xy, yy] = tensor(blocks, near, |_, [x, y]| [x * x, x * y, y * y]);
+fn direction(blocks: &Blocks) -> Option<f64> {
+    let [xx, xy, yy] = tensor(blocks, |_, [x, y]| [x * x, x * y, y * y]);
     let is_flat = xx + yy <= 0.0;
     // Half the angle whose tangent is 2·xy / (xx − yy), in any quadrant.
     let (sine, cosine) = (2.0 * xy, xx - yy);
@@ -64,10 +64,10 @@ fn direction(blocks: &Blocks, near: f32) -> Option<f64> {
 }
 
 /// The point that the gradients g at p point to or away from: the least squares of g⊥·(p − c) over all of them.
-fn center(blocks: &Blocks, near: f32) -> Option<Point> {
+fn center(blocks: &Blocks) -> Option<Point> {
     // With g⊥ = (y, −x) of a gradient (x, y): Σ g⊥g⊥ᵀ · c = Σ g⊥(g⊥·p), two equations for the centre c.
-    let [xx, xy, yy] = tensor(blocks, near, |_, [x, y]| [y * y, -x * y, x * x]);
-    let [bx, by, _] = tensor(blocks, near, |p, [x, y]| {
+    let [xx, xy, yy] = tensor(blocks, |_, [x, y]| [y * y, -x * y, x * x]);
+    let [bx, by, _] = tensor(blocks, |p, [x, y]| {
         let along = p.x * y - p.y * x;
         [y * along, -x * along, 0.0]
     });
@@ -90,8 +90,8 @@ fn center(blocks: &Blocks, near: f32) -> Option<Point> {
 
 /// The sum over blocks and channels of what `term` makes of the place and the gradient. Steep gradients are edges of
 /// things, and do not count.
-fn tensor(blocks: &Blocks, near: f32, term: impl Fn(Point, [f64; 2]) -> [f64; 3]) -> [f64; 3] {
-    let steepest = 4.0 * near;
+fn tensor(blocks: &Blocks, term: impl Fn(Point, [f64; 2]) -> [f64; 3]) -> [f64; 3] {
+    let steepest = 4.0 * NEAR;
     let mut sums = [0.0; 3];
     for (place, slopes) in blocks.slopes() {
         // One steep channel drops the block: an edge bends the direction of all channels.
@@ -140,42 +140,14 @@ fn circle(blocks: &Blocks, center: Point) -> Axis {
 /// Spread of blocks of similar offsets: the sum of squared differences from the polyline through the means of groups. Differences
 /// from the means themselves would be those along the axis where groups are wide.
 fn spread(blocks: &Blocks, axis: Axis) -> f64 {
-    let taking_part = || blocks.all.iter().filter(|block| block.weight > 0.0);
-    let offset = |block: &Block| axis.offset(block.center).clamp(0.0, 1.0);
     // Each group has a knot at its mean offset.
-    let mut sums = [[0.0; 6]; GROUPS];
-    for block in taking_part() {
-        let at = offset(block);
-        let [r, g, b, a] = block.value.map(f64::from);
-        let sum = &mut sums[((at * GROUPS as f64) as usize).min(GROUPS - 1)];
-        let terms = [1.0, at, r, g, b, a];
-        sum.iter_mut()
-            .zip(terms)
-            .for_each(|(sum, term)| *sum += term);
-    }
-    let filled = sums.iter().filter(|sum| sum[0] > 0.0);
-    let knots: Vec<[f64; 5]> = filled
-        .map(|&[count, at, r, g, b, a]| [at, r, g, b, a].map(|sum| sum / count))
-        .collect();
-    // The difference of each block from the polyline through the knots on both sides of it.
+    let knots = blocks.grouped(axis, GROUPS);
+    let offsets: Vec<f64> = knots.iter().map(|knot| knot.offset).collect();
     let apart = |block: &Block| {
-        let at = offset(block);
-        let after = knots.partition_point(|knot| knot[0] <= at);
-        let last = knots.len().saturating_sub(1);
-        let [from, to] = [after.saturating_sub(1), after.min(last)].map(|k| knots[k]);
-        let width = to[0] - from[0];
-        // Beyond the outermost knots both neighbours are one knot: the polyline goes on level.
-        let part = if width > 0.0 {
-            (at - from[0]) / width
-        } else {
-            0.0
-        };
-        let channel = |c: usize| {
-            let seen = from[c + 1] + part * (to[c + 1] - from[c + 1]);
-            let apart = f64::from(block.value[c]) - seen;
-            apart * apart
-        };
-        (0..4).map(channel).sum::<f64>()
+        let at = axis.offset(block.center).clamp(0.0, 1.0);
+        let at = Between::of(&offsets, at);
+        let channel = |c: usize| f64::from(block.value[c]) - at.value(|i| knots[i].value[c]);
+        [0, 1, 2, 3].map(channel).map(|v| v * v).iter().sum::<f64>()
     };
-    taking_part().map(apart).sum()
+    blocks.taking_part().map(apart).sum()
 }

@@ -1,9 +1,14 @@
 //! The stops of a shade along a given axis.
 
-use super::{Blocks, ShadeFit};
-use crate::math::Point;
+use super::{Between, Blocks, Group};
+use crate::math::{Normal, Point};
 use crate::scene::{Axis, Shade, ShadeStop};
 
+/// Most stops of a gradient that is found.
+const MOST: usize = 8;
+/// One more stop has to remove this share of the squared error. Eight stops at 0.1 against six at 0.15, drafts: noto-telescope +0.10 dB
+/// at 0.9 % less bytes, noto-hibiscus +0.05 at 3.2 % less; the gradients of pages are the same.
+const STOP_SHARE: f64 = 0.1;
 /// Places along the axis that stops may have at first.
 const PLACES: usize = 64;
 /// Groups of blocks with similar offsets, whose means stand for them.
@@ -14,12 +19,12 @@ const ROUNDING: f64 = 4.0 / 12.0 / (255.0 * 255.0);
 const RIDGE: f64 = 1e-4;
 
 /// The shade along `axis`.
-pub(super) fn of(blocks: &Blocks, axis: Axis, fit: &ShadeFit) -> Option<Shade> {
+pub(super) fn of(blocks: &Blocks, axis: Axis) -> Option<Shade> {
     // Greedy: start with a stop at either end, and add the stop that removes most error, as long as that pays.
     let profile = Profile::of(blocks, axis);
     let mut offsets = vec![0.0, 1.0];
     let mut error = profile.error(&offsets);
-    while offsets.len() < fit.stops && error >= ROUNDING * profile.count {
+    while offsets.len() < MOST && error >= ROUNDING * profile.count {
         // Try one more stop at each of the even places. For each, the best colours of all stops are a linear problem.
         let places = (1..PLACES).map(|i| i as f64 / PLACES as f64);
         let with = |place: f64| {
@@ -37,7 +42,7 @@ pub(super) fn of(blocks: &Blocks, axis: Axis, fit: &ShadeFit) -> Option<Shade> {
         };
         // Let all inner stops move before judging: the new one changes where the others are best.
         let (moved, found) = profile.moved(with(place));
-        if error - found < fit.stop_share * error {
+        if error - found < STOP_SHARE * error {
             break;
         }
         (offsets, error) = (moved, found);
@@ -93,13 +98,6 @@ fn trimmed(axis: Axis, mut stops: Vec<ShadeStop>) -> Option<Shade> {
     Shade::new(axis, &stops).ok()
 }
 
-/// Mean offset, number and mean value of a group of blocks.
-struct Group {
-    offset: f64,
-    count: f64,
-    value: [f64; 4],
-}
-
 /// Values along an axis.
 struct Profile {
     groups: Vec<Group>,
@@ -109,26 +107,8 @@ struct Profile {
 
 impl Profile {
     fn of(blocks: &Blocks, axis: Axis) -> Self {
-        // Sum count, offset and value by group. A fit then takes as long as there are groups, however many blocks there are.
-        let mut sums = vec![[0.0_f64; 6]; GROUPS];
-        for block in blocks.all.iter().filter(|block| block.weight > 0.0) {
-            let offset = axis.offset(block.center).clamp(0.0, 1.0);
-            let group = (offset * GROUPS as f64) as usize;
-            let [r, g, b, a] = block.value.map(f64::from);
-            let terms = [1.0, offset, r, g, b, a];
-            let sums = &mut sums[group.min(GROUPS - 1)];
-            sums.iter_mut()
-                .zip(terms)
-                .for_each(|(sum, term)| *sum += term);
-        }
-        let filled = sums.iter().filter(|sums| sums[0] > 0.0);
-        let groups: Vec<Group> = filled
-            .map(|&[count, offset, r, g, b, a]| Group {
-                offset: offset / count,
-                count,
-                value: [r, g, b, a].map(|sum| sum / count),
-            })
-            .collect();
+        // A fit takes as long as there are groups, however many blocks there are.
+        let groups = blocks.grouped(axis, GROUPS);
         Self {
             count: groups.iter().map(|group| group.count).sum(),
             groups,
@@ -137,27 +117,25 @@ impl Profile {
 
     /// The best stops at these offsets.
     fn stops(&self, offsets: &[f64]) -> Vec<ShadeStop> {
-        self.stops_seen(offsets, &self.segments(offsets))
+        self.stops_seen(offsets, &self.places(offsets))
     }
 
-    /// The segment between two offsets that each group is in.
-    fn segments(&self, offsets: &[f64]) -> Vec<Segment> {
-        let groups = self.groups.iter();
-        groups
-            .map(|group| Segment::of(offsets, group.offset))
-            .collect()
+    /// The place of each group between two offsets.
+    fn places(&self, offsets: &[f64]) -> Vec<Between> {
+        let place = |group: &Group| Between::of(offsets, group.offset);
+        self.groups.iter().map(place).collect()
     }
 
-    /// The best stops at these offsets, which the groups are between in these segments. The opacity comes first: once it is
+    /// The best stops at these offsets, which the groups are between at these places. The opacity comes first: once it is
     /// fixed, premultiplied colours are linear in the stops' colours.
-    fn stops_seen(&self, offsets: &[f64], segments: &[Segment]) -> Vec<ShadeStop> {
+    fn stops_seen(&self, offsets: &[f64], places: &[Between]) -> Vec<ShadeStop> {
         let n = offsets.len();
-        let opacity = self.fitted(n, segments, |group, _| (1.0, group.value[3]));
+        let opacity = self.fitted(n, places, |group, _| (1.0, group.value[3]));
         let opacity: Vec<f64> = opacity.iter().map(|v| v.clamp(0.0, 1.0)).collect();
         let channel = |c: usize| {
             // opacity · color = premultiplied value, with the opacity as the known factor.
-            let of = |group: &Group, at: Segment| (at.value(&opacity), group.value[c]);
-            self.fitted(n, segments, of)
+            let of = |group: &Group, at: Between| (at.value(|i| opacity[i]), group.value[c]);
+            self.fitted(n, places, of)
         };
         let colors = [channel(0), channel(1), channel(2)];
         let stop = |(i, &offset): (usize, &f64)| ShadeStop {
@@ -170,22 +148,22 @@ impl Profile {
 
     /// The squared error of the best stops at these offsets.
     fn error(&self, offsets: &[f64]) -> f64 {
-        let segments = self.segments(offsets);
-        let stops = self.stops_seen(offsets, &segments);
+        let places = self.places(offsets);
+        let stops = self.stops_seen(offsets, &places);
         let plane = |of: &dyn Fn(&ShadeStop) -> f32| -> Vec<f64> {
             stops.iter().map(|stop| f64::from(of(stop))).collect()
         };
         let colors = [0, 1, 2].map(|c: usize| plane(&|stop| stop.color[c]));
         let opacity = plane(&|stop| stop.opacity);
-        let error = |(group, at): (&Group, &Segment)| {
+        let error = |(group, at): (&Group, &Between)| {
             // Colour and opacity are interpolated apart and multiplied afterwards, as SVG renderers do.
-            let opacity = at.value(&opacity);
-            let channel = |c: usize| opacity * at.value(&colors[c]);
+            let opacity = at.value(|i| opacity[i]);
+            let channel = |c: usize| opacity * at.value(|i| colors[c][i]);
             let seen = [channel(0), channel(1), channel(2), opacity];
             let errors = seen.iter().zip(group.value).map(|(a, b)| (a - b) * (a - b));
             group.count * errors.sum::<f64>()
         };
-        self.groups.iter().zip(&segments).map(error).sum()
+        self.groups.iter().zip(&places).map(error).sum()
     }
 
     /// The offsets, each moved to where the error is least while its neighbours stay, and that error.
@@ -198,7 +176,7 @@ impl Profile {
             for (i, step) in inner.flat_map(|i| [(i, step), (i, -step)]) {
                 let mut tried = offsets.clone();
                 tried[i] += step;
-                // Stops keep their order and a small distance, so no segment has length 0.
+                // Stops keep their order and a small distance, so no two are in one place.
                 if tried[i] <= tried[i - 1] + 2e-3 || tried[i] >= tried[i + 1] - 2e-3 {
                     continue;
                 }
@@ -213,78 +191,27 @@ impl Profile {
     }
 
     /// Values at `n` offsets, linear between them, that are the least squares of `factor · value − wanted` over all blocks.
-    /// `of` gives factor and wanted value of a group in its segment.
+    /// `of` gives factor and wanted value of a group at its place.
     fn fitted(
         &self,
         n: usize,
-        segments: &[Segment],
-        of: impl Fn(&Group, Segment) -> (f64, f64),
+        places: &[Between],
+        of: impl Fn(&Group, Between) -> (f64, f64),
     ) -> Vec<f64> {
-        // The normal equations. A group lies between two neighbouring offsets, so it couples these two unknowns alone, and the
-        // matrix is tridiagonal.
-        let (mut diagonal, mut beside, mut wanted) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let mut equations = Normal::of(n);
         let (mut weight, mut sum) = (1e-12, 0.0);
-        for (group, &at) in self.groups.iter().zip(segments) {
+        for (group, &at) in self.groups.iter().zip(places) {
             let (factor, value) = of(group, at);
-            let Segment { i, part } = at;
-            let weights = [factor * (1.0 - part), factor * part];
-            diagonal[i] += group.count * weights[0] * weights[0];
-            diagonal[i + 1] += group.count * weights[1] * weights[1];
-            beside[i] += group.count * weights[0] * weights[1];
-            wanted[i] += group.count * weights[0] * value;
-            wanted[i + 1] += group.count * weights[1] * value;
+            let [from, to] = at.ends;
+            let terms = [(from, factor * (1.0 - at.part)), (to, factor * at.part)];
+            equations.add(&terms, [value], group.count);
             weight += group.count * factor * factor;
             sum += group.count * factor * value;
         }
         // A ridge towards the mean keeps the matrix positive definite where no group is near an offset.
         let (pull, mean) = (RIDGE * weight.max(1e-6), sum / weight);
-        for (diagonal, wanted) in diagonal.iter_mut().zip(&mut wanted) {
-            *diagonal += pull;
-            *wanted += pull * mean;
-        }
-        solved(diagonal, &beside, wanted)
-    }
-}
-
-/// The solution of a symmetric tridiagonal system: elimination forwards, substitution backwards.
-fn solved(mut diagonal: Vec<f64>, beside: &[f64], mut wanted: Vec<f64>) -> Vec<f64> {
-    for i in 1..diagonal.len() {
-        // The matrix is positive definite, so no pivot is 0 and rows need no exchange.
-        let factor = beside[i - 1] / diagonal[i - 1];
-        diagonal[i] -= factor * beside[i - 1];
-        wanted[i] -= factor * wanted[i - 1];
-    }
-    for i in (0..diagonal.len()).rev() {
-        let known = wanted.get(i + 1).map_or(0.0, |next| beside[i] * next);
-        wanted[i] = (wanted[i] - known) / diagonal[i];
-    }
-    wanted
-}
-
-/// A place between two offsets.
-#[derive(Clone, Copy)]
-struct Segment {
-    /// Index of the offset before.
-    i: usize,
-    /// Part of the way to the next offset.
-    part: f64,
-}
-
-impl Segment {
-    /// The place of `at`.
-    fn of(offsets: &[f64], at: f64) -> Self {
-        let after = offsets.partition_point(|&offset| offset <= at);
-        // A place before the first offset or beyond the last belongs to the segment there.
-        let i = after.clamp(1, offsets.len() - 1) - 1;
-        let part = (at - offsets[i]) / (offsets[i + 1] - offsets[i]);
-        Self {
-            i,
-            part: part.clamp(0.0, 1.0),
-        }
-    }
-
-    /// The value here, linear between these values at the offsets.
-    fn value(self, values: &[f64]) -> f64 {
-        values[self.i] + self.part * (values[self.i + 1] - values[self.i])
+        (0..n).for_each(|i| equations.add(&[(i, 1.0)], [mean], pull));
+        let found = equations.solve().map(Vec::into_flattened);
+        found.unwrap_or_else(|| vec![mean; n])
     }
 }

@@ -4,7 +4,7 @@
 //! given axis both are linear between knots, so that the best ones are a linear least-squares problem. Places of the axis are
 //! searched for the least error. Then the lower shade is fitted again to what it must have been below the upper one, and so on.
 
-use super::{Block, Blocks, Met, NEAR, ShadeFit, Value, axis, premultiplied, profile};
+use super::{Block, Blocks, Met, NEAR, Value, axis, premultiplied, profile};
 use crate::math::{self, Normal, Point};
 use crate::scene::{Axis, Shade};
 
@@ -30,17 +30,12 @@ const HIDING: f32 = 0.8;
 
 impl Blocks {
     /// Shades on top of each other, back to front, that meet at least this `share` of the blocks; at most `most` of them.
-    pub(crate) fn best_shades(
-        &self,
-        fit: &ShadeFit,
-        share: f32,
-        most: usize,
-    ) -> Option<(Vec<Shade>, Met)> {
-        let mut lowest = self.best_shade(fit);
+    pub(crate) fn best_shades(&self, share: f32, most: usize) -> Option<(Vec<Shade>, Met)> {
+        let mut lowest = self.best_shade();
         if most > 1 && lowest.as_ref().is_none_or(|(_, met)| met.share < share) {
             // A fit to all blocks may follow the shade on top. This one starts with a wide tolerance and narrows it, so it settles
             // on the shade below.
-            let robust = self.best_of(fit, &FACTORS);
+            let robust = self.best_of(&FACTORS);
             lowest = lowest
                 .into_iter()
                 .chain(robust)
@@ -50,7 +45,7 @@ impl Blocks {
         let mut found = (vec![shade], met);
         // Add shades on top, one at a time, as long as each meets more blocks.
         while found.1.share < share && found.0.len() < most {
-            let stack = self.stacked(&found.0, fit)?;
+            let stack = self.stacked(&found.0)?;
             let met = self.met(NEAR, |block| stacked(&stack, block.center));
             if met.share <= found.1.share {
                 break;
@@ -61,7 +56,7 @@ impl Blocks {
     }
 
     /// The shades with one more on top, all fitted to each other.
-    fn stacked(&self, below: &[Shade], fit: &ShadeFit) -> Option<Vec<Shade>> {
+    fn stacked(&self, below: &[Shade]) -> Option<Vec<Shade>> {
         let mut stack = below.to_vec();
         let mut from = self.starts(below);
         // Alternate: fit the top shade to what the others leave, then the lowest one to what shows through. A round may be worse
@@ -69,11 +64,11 @@ impl Blocks {
         let mut best: Option<(f32, Vec<Shade>)> = None;
         for _ in 0..ROUNDS {
             stack.truncate(below.len());
-            let top = self.on_top(&stack, &from, fit)?;
+            let top = self.on_top(&stack, &from)?;
             // Later rounds search near the axis that was found, and not from all starts again.
             from = vec![top.axis()];
             stack.push(top);
-            self.refit(&mut stack, fit);
+            self.refit(&mut stack);
             let met = self.met(NEAR, |block| stacked(&stack, block.center));
             if best.as_ref().is_none_or(|(share, _)| met.share > *share) {
                 best = Some((met.share, stack.clone()));
@@ -83,7 +78,7 @@ impl Blocks {
     }
 
     /// Fits the lowest shade to the values that it must have below the others.
-    fn refit(&self, stack: &mut [Shade], fit: &ShadeFit) {
+    fn refit(&self, stack: &mut [Shade]) {
         let Some((lowest, others)) = stack.split_first_mut() else {
             return;
         };
@@ -105,7 +100,7 @@ impl Blocks {
             all: self.all.iter().map(unmixed).collect(),
             ..*self
         };
-        if let Some((shade, _)) = blocks.best_shade(fit) {
+        if let Some((shade, _)) = blocks.best_shade() {
             *lowest = shade;
         }
     }
@@ -132,7 +127,7 @@ impl Blocks {
             .into_iter()
             .flat_map(|angle| [angle, angle + std::f64::consts::PI]);
         let lines = lines.map(|angle| axis::line(self, angle));
-        let around = self.unexplained(below, NEAR).into_iter();
+        let around = self.unexplained(below).into_iter();
         let around = around.flat_map(|(center, spread)| {
             SPREADS.map(|spreads| Axis::Radial {
                 center,
@@ -143,12 +138,12 @@ impl Blocks {
     }
 
     /// The middle of the blocks that these shades do not explain, and their spread, px.
-    fn unexplained(&self, below: &[Shade], near: f32) -> Option<(Point, f64)> {
+    fn unexplained(&self, below: &[Shade]) -> Option<(Point, f64)> {
         let missing = |block: &Block| {
             let seen = stacked(below, block.center);
             let apart = block.value.iter().zip(seen).map(|(a, b)| (a - b).abs());
             // Differences within the tolerance are explained. The rest counts by its square.
-            let beyond = (apart.fold(0.0, f32::max) - near).max(0.0);
+            let beyond = (apart.fold(0.0, f32::max) - NEAR).max(0.0);
             block.weight * beyond * beyond
         };
         let missing = self.all.iter().map(missing).map(f64::from);
@@ -168,15 +163,15 @@ impl Blocks {
     }
 
     /// The shade that brings what these shades show nearest to the blocks, along the best axis near one of `from`.
-    fn on_top(&self, below: &[Shade], from: &[Axis], fit: &ShadeFit) -> Option<Shade> {
+    fn on_top(&self, below: &[Shade], from: &[Axis]) -> Option<Shade> {
         let seen: Vec<Value> = self
             .all
             .iter()
             .map(|block| stacked(below, block.center))
             .collect();
         let cost = |axis: Axis| {
-            self.layer(axis, &seen, NEAR)
-                .map_or(f64::INFINITY, |layer| layer.error)
+            let layer = self.layer(axis, &seen);
+            layer.map_or(f64::INFINITY, |layer| layer.error)
         };
         // The best start, and the best axis near it.
         let starts = from.iter().map(|&axis| (cost(axis), axis));
@@ -187,7 +182,7 @@ impl Blocks {
         });
         let axis = moved(start, numbers);
         // The layer's profile as a gradient of few stops.
-        let layer = self.layer(axis, &seen, NEAR)?;
+        let layer = self.layer(axis, &seen)?;
         let blocks = Self {
             all: self
                 .all
@@ -199,28 +194,20 @@ impl Blocks {
                 .collect(),
             ..*self
         };
-        profile::of(&blocks, axis, fit)
+        profile::of(&blocks, axis)
     }
 
-    /// The best layer along an axis on top of what is `seen`, where differences far beyond `near` count little.
-    fn layer(&self, axis: Axis, seen: &[Value], near: f32) -> Option<Layer> {
-        let is_short = match axis {
-            Axis::Linear { from, to } => (to - from).hypot() < 2.0,
-            Axis::Radial { radius, .. } => radius < 2.0,
-        };
-        if is_short {
+    /// The best layer along an axis on top of what is `seen`, where differences far beyond [`NEAR`] count little.
+    fn layer(&self, axis: Axis, seen: &[Value]) -> Option<Layer> {
+        if axis.length() < 2.0 {
             return None;
         }
         // Unknowns: the premultiplied value of each knot. Each block adds one equation per channel, (1 − a)·seen + p = value, to
         // the normal equations.
         const N: usize = 4 * KNOTS;
         let mut equations = Normal::of(N);
-        let taking_part = || {
-            self.all
-                .iter()
-                .zip(seen)
-                .filter(|(block, _)| block.weight > 0.0)
-        };
+        let both = || self.all.iter().zip(seen);
+        let taking_part = || both().filter(|(block, _)| block.weight > 0.0);
         let (mut below, mut counts) = ([[0.0; 3]; KNOTS], [0.0; KNOTS]);
         let mut weights = 0.0;
         for (block, seen) in taking_part() {
@@ -274,7 +261,7 @@ impl Blocks {
         });
         let mut layer = Layer { knots, error: 0.0 };
         // Cut off large differences: things in front of all shades don't decide.
-        let most = f64::from(4.0 * near);
+        let most = f64::from(4.0 * NEAR);
         for (block, seen) in taking_part() {
             let shown = over(layer.at(axis, block.center), *seen);
             let errors = (0..4).map(|c| f64::from(shown[c] - block.value[c]).abs().min(most));
@@ -372,13 +359,6 @@ mod tests {
         }
     }
 
-    const FIT: ShadeFit = ShadeFit {
-        hopeless_share: 0.1,
-        stops: 6,
-        rounds: 4,
-        stop_share: 0.15,
-    };
-
     #[test]
     fn a_glow_on_a_sky_is_a_shade_on_a_shade() {
         let sun = Point::new(230.0, 90.0);
@@ -389,9 +369,9 @@ mod tests {
             [0, 1, 2].map(|c| below[c] + glow * ([1.0, 0.95, 0.7][c] - below[c]))
         };
         let blocks = blocks(sky);
-        let (alone, met) = blocks.best_shades(&FIT, 0.95, 1).unwrap();
+        let (alone, met) = blocks.best_shades(0.95, 1).unwrap();
         assert!(alone.len() == 1 && met.share < 0.95, "{met:?}");
-        let (shades, met) = blocks.best_shades(&FIT, 0.95, 3).unwrap();
+        let (shades, met) = blocks.best_shades(0.95, 3).unwrap();
         assert!(shades.len() == 2 && met.share >= 0.95, "{met:?}");
         let Axis::Radial { center, .. } = shades[1].axis() else {
             panic!("{shades:?}");
@@ -403,7 +383,7 @@ mod tests {
     #[test]
     fn a_ramp_needs_no_second_shade() {
         let blocks = blocks(|p| [(p.x / 320.0) as f32, 0.5, 0.2]);
-        let (shades, _) = blocks.best_shades(&FIT, 0.95, 3).unwrap();
+        let (shades, _) = blocks.best_shades(0.95, 3).unwrap();
         assert_eq!(shades.len(), 1);
     }
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::fit::config::Background;
 use crate::fit::drawing::{shading, shadows};
 use crate::image::Image;
+use crate::math;
 use crate::scene::{Area, Rgb};
 
 /// Least share of the pixels that have the most common colour if that becomes the background; otherwise the mean colour does.
@@ -103,7 +104,7 @@ fn border_color(colors: &[[u8; 3]], width: usize) -> Option<Rgb> {
 /// The mean of the colours near the most common one, if enough of the pixels have those: paper that was scanned has spots.
 fn spotted_color(mut pixels: Vec<[u8; 3]>) -> Option<Rgb> {
     let all = pixels.len();
-    let most = most_common(&mut pixels)?[0];
+    let most = math::most_common(&mut pixels)?[0];
     let is_near = |color: &[u8; 3]| {
         let channels = color.iter().zip(most);
         channels.fold(0, |far, (a, b)| far.max(a.abs_diff(b))) <= SPOTS
@@ -131,17 +132,9 @@ fn prevailing_color(image: &Image, colors: &[[u8; 3]]) -> Rgb {
 fn common_color(pixels: impl Iterator<Item = [u8; 3]>, least_share: f64) -> Option<Rgb> {
     let mut colors: Vec<[u8; 3]> = pixels.collect();
     let all = colors.len();
-    let most = most_common(&mut colors)?;
+    let most = math::most_common(&mut colors)?;
     let is_common = most.len() as f64 >= least_share * all as f64;
     is_common.then(|| most[0].map(|v| f32::from(v) / 255.0))
-}
-
-/// The pixels of the most common colour; `None` of no pixels.
-fn most_common(colors: &mut [[u8; 3]]) -> Option<&[[u8; 3]]> {
-    // Equal colours become neighbours. Of equally common ones the largest is taken, whatever the order of pixels.
-    colors.sort_unstable();
-    let runs = colors.chunk_by(|a, b| a == b);
-    runs.max_by_key(|run| run.len())
 }
 
 /// Share of the pixels that are translucent and have only translucent neighbours. This leaves out the antialiased edges
@@ -166,7 +159,6 @@ fn translucent_share(image: &Image) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math;
 
     /// A grey disc with an antialiased edge, `alpha` inside.
     fn disc(alpha: f32) -> Image {

@@ -1,8 +1,9 @@
 //! The choice of a shade: a gradient for a picture whose page is one.
 
 use crate::image::Image;
-use crate::scene::{Area, Axis, Scene, Shade, ShadeStop};
-use crate::shading::{Block, Blocks, NEAR, ShadeFit, Value};
+use crate::math;
+use crate::scene::{Area, Scene, Shade, ShadeStop};
+use crate::shading::{Block, Blocks, NEAR, Value};
 use crate::svg::{self, WriteOptions};
 
 // All of these are guesses.
@@ -14,13 +15,6 @@ const LEAST_SHARE: f32 = 0.5;
 const LEAST_GAIN: f32 = 0.25;
 /// Largest change of a page per px: a larger one is the edge of a thing.
 const STEEPEST: f32 = 14.0 / 255.0;
-/// The fit of the gradient.
-const FIT: ShadeFit = ShadeFit {
-    hopeless_share: 0.2,
-    stops: 8,
-    rounds: 4,
-    stop_share: 0.1,
-};
 
 /// A page with the gradient of `picture`, if more of the picture is near it than near its best single colour, and it removes as much
 /// squared error as its bytes have to at `price_per_byte`.
@@ -33,7 +27,7 @@ pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> Option<Are
     if alone.share + LEAST_GAIN > 1.0 {
         return None;
     }
-    let (shade, met) = blocks.best_shade(&FIT)?;
+    let (shade, met) = blocks.best_shade()?;
     if has_edge(&shade) {
         return None;
     }
@@ -48,13 +42,10 @@ pub(in crate::fit) fn choose(picture: &Image, price_per_byte: f32) -> Option<Are
 
 /// True if the shade changes by more than [`STEEPEST`] somewhere: there is the edge of a thing, which is none of the page.
 fn has_edge(shade: &Shade) -> bool {
-    let length = match shade.axis() {
-        Axis::Linear { from, to } => (to - from).hypot(),
-        Axis::Radial { radius, .. } => radius,
-    };
+    let length = shade.axis().length() as f32;
     shade.stops().windows(2).any(|ends| {
         // One px more, so that two stops in one place count as an edge of a pixel and not as infinitely steep.
-        let px = 1.0 + length as f32 * (ends[1].offset - ends[0].offset);
+        let px = 1.0 + length * (ends[1].offset - ends[0].offset);
         let value = |stop: &ShadeStop, c: usize| match c {
             3 => stop.opacity,
             c => stop.color[c] * stop.opacity,
@@ -95,16 +86,14 @@ fn flat(blocks: &Blocks) -> Value {
     let key = |block: &Block| block.value.map(|v| (v * 255.0).round() as u8);
     // In 8-bit levels, so that blocks of one colour are equal.
     let mut keys: Vec<[u8; 4]> = blocks.all.iter().map(key).collect();
-    keys.sort_unstable();
-    let runs = keys.chunk_by(|a, b| a == b);
-    let most = runs.max_by_key(|run| run.len()).and_then(|run| run.first());
-    most.map_or([0.0; 4], |key| key.map(|level| f32::from(level) / 255.0))
+    let most = math::most_common(&mut keys).map_or([0; 4], |keys| keys[0]);
+    most.map(|level| f32::from(level) / 255.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math;
+    use crate::scene::Axis;
     use crate::shading::premultiplied;
 
     const WIDTH: usize = 120;

@@ -10,7 +10,7 @@ mod shares;
 use crate::image::Image;
 use crate::math;
 use crate::scene::{Area, Path, Rgb, Shape};
-use crate::shading::{Blocks, ShadeFit};
+use crate::shading::Blocks;
 use crate::trace;
 use caster::{Cast, Search};
 use shares::Shares;
@@ -34,13 +34,6 @@ const SHAPE: f64 = 0.8;
 const GRADIENT_BLOCKS: usize = 64;
 /// Share of the soft ones of them that a gradient has to meet to be the better explanation.
 const GRADIENT_SHARE: f32 = 0.9;
-/// The fit of that gradient.
-const GRADIENT: ShadeFit = ShadeFit {
-    hopeless_share: 0.5,
-    stops: 8,
-    rounds: 2,
-    stop_share: 0.1,
-};
 
 /// The shadows of `picture` on a page of this colour, or on no page, back to front. None if there is nothing soft on the page,
 /// or the blurs of one shape do not explain it, or their bytes cost more than they gain at `price_per_byte`.
@@ -116,6 +109,6 @@ fn is_gradient(shares: &Shares) -> bool {
         let sum: Option<f32> = soft.sum();
         sum.map(|sum| [sum / pixels.len() as f32; 4])
     });
-    let found = blocks.best_shade(&GRADIENT);
+    let found = blocks.best_shade();
     found.is_some_and(|(_, met)| met.share >= GRADIENT_SHARE)
 }

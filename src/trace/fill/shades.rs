@@ -7,10 +7,10 @@
 use rayon::prelude::*;
 
 use super::super::areas::{LEVEL, Pixel, Pixels, away};
-use crate::image::beside;
-use crate::math::Point;
+use crate::image::flooded;
+use crate::math::{self, Point};
 use crate::scene::Shade;
-use crate::shading::{self, Block, Blocks, ShadeFit, Value, stacked};
+use crate::shading::{self, Block, Blocks, Value, stacked};
 
 /// A pixel of no shade.
 const NONE: u16 = u16::MAX;
@@ -40,13 +40,6 @@ const LEAST_STACKED: usize = 2000;
 const FLAT_SHARE: f32 = 0.25;
 /// Most times that colours are taken away.
 const ROUNDS: usize = 4;
-/// The fit of a gradient.
-const FIT: ShadeFit = ShadeFit {
-    hopeless_share: 0.1,
-    stops: 6,
-    rounds: 4,
-    stop_share: 0.15,
-};
 /// Pixels that differ by less are of one colour: rounding.
 const FLAT: f32 = 1.5 * LEVEL;
 
@@ -131,7 +124,7 @@ impl Shaded {
         } else {
             MOST_STACKED
         };
-        let found = blocks.best_shades(&FIT, LEAST_SHARE, most);
+        let found = blocks.best_shades(LEAST_SHARE, most);
         let found =
             found.filter(|(_, met)| met.share >= LEAST_SHARE && met.share >= alone + LEAST_GAIN);
         match found {
@@ -152,18 +145,15 @@ impl Shaded {
             let seen = shown(shades, pixels, i, mattes);
             away(&pixels.target.at(i), &seen) <= shading::NEAR + LEVEL
         };
-        let mut taken: Vec<usize> = part.iter().copied().filter(|&i| is_met(i)).collect();
+        let taken: Vec<usize> = part.iter().copied().filter(|&i| is_met(i)).collect();
         taken.iter().for_each(|&i| self.of[i] = index);
-        let mut next = 0;
-        while let Some(&i) = taken.get(next) {
-            next += 1;
-            for k in beside(i, pixels.width, self.of.len()) {
-                if self.of[k] == NONE && is_met(k) {
-                    self.of[k] = index;
-                    taken.push(k);
-                }
+        flooded(taken, [pixels.width, self.of.len()], |_, k| {
+            let joins = self.of[k] == NONE && is_met(k);
+            if joins {
+                self.of[k] = index;
             }
-        }
+            joins
+        });
     }
 }
 
@@ -228,25 +218,22 @@ fn parts(pixels: &Pixels<'_>, open: &[bool]) -> Vec<Vec<usize>> {
             continue;
         }
         is_seen[start] = true;
-        let (mut part, mut next) = (vec![start], 0);
-        let (mut low, mut high) = (pixels.target.at(start), pixels.target.at(start));
-        while let Some(&i) = part.get(next) {
-            next += 1;
-            let own = pixels.target.at(i);
-            for k in 0..own.len() {
-                low[k] = low[k].min(own[k]);
-                high[k] = high[k].max(own[k]);
-            }
-            for k in beside(i, pixels.width, open.len()) {
-                if !is_seen[k] && away(&pixels.target.at(k), &own) <= steepest {
-                    is_seen[k] = true;
-                    part.push(k);
-                }
-            }
-        }
+        let value = |i: usize| pixels.target.at(i);
+        let part = flooded(vec![start], [pixels.width, open.len()], |i, k| {
+            let joins = !is_seen[k] && away(&value(k), &value(i)) <= steepest;
+            is_seen[k] |= joins;
+            joins
+        });
         // Flat parts are colours, and small ones tell no axis.
+        let ends = |k: usize| {
+            let own = part.iter().map(move |&i| value(i)[k]);
+            own.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], v| {
+                [low.min(v), high.max(v)]
+            })
+        };
+        let range = |k: usize| ends(k)[1] - ends(k)[0];
         let is_large = part.len() >= LEAST_PIXELS;
-        if is_large && away(&low, &high) >= LEAST_RANGE * LEVEL {
+        if is_large && (0..6).map(range).fold(0.0, f32::max) >= LEAST_RANGE * LEVEL {
             parts.push(part);
         }
     }
@@ -302,13 +289,8 @@ fn usual(pixels: &Pixels<'_>, part: &[usize]) -> (Pixel, usize) {
     let key = |i: usize| pixels.target.at(i).map(|v| (v * 255.0).round() as i16);
     let sample = part.iter().step_by(part.len().div_ceil(4096));
     let mut keys: Vec<[i16; 6]> = sample.map(|&i| key(i)).collect();
-    keys.sort_unstable();
-    let most = keys.chunk_by(|a, b| a == b).max_by_key(|run| run.len());
-    let color = most
-        .and_then(|run| run.first())
-        .copied()
-        .unwrap_or_default();
-    let color = color.map(|level| f32::from(level) * LEVEL);
+    let most = math::most_common(&mut keys).map_or([0; 6], |keys| keys[0]);
+    let color = most.map(|level| f32::from(level) * LEVEL);
     let is_of = |&&i: &&usize| away(&pixels.target.at(i), &color) < FLAT;
     (color, part.iter().filter(is_of).count())
 }

@@ -1,6 +1,6 @@
 //! The shares of a colour that lies softly on the page, and the caster that they surround.
 
-use crate::image::{Image, beside};
+use crate::image::{Image, beside, flooded};
 use crate::render::{self, Plane};
 use crate::scene::Rgb;
 
@@ -135,17 +135,14 @@ fn kinds(values: &Values<'_>, page: Value) -> Vec<Kind> {
     };
     let mut kinds: Vec<Kind> = (0..values.len()).map(kind).collect();
     // A flood through smooth pixels: a shadow is connected with the page, and an edge stops it.
-    let mut open: Vec<usize> = (0..kinds.len())
-        .filter(|&i| kinds[i] == Kind::Page)
-        .collect();
-    while let Some(i) = open.pop() {
-        for k in beside(i, values.width(), kinds.len()) {
-            if kinds[k] == Kind::Other && values.is_smooth(k, BEND) {
-                kinds[k] = Kind::Soft;
-                open.push(k);
-            }
+    let page = (0..kinds.len()).filter(|&i| kinds[i] == Kind::Page);
+    flooded(page.collect(), [values.width(), values.len()], |_, k| {
+        let is_soft = kinds[k] == Kind::Other && values.is_smooth(k, BEND);
+        if is_soft {
+            kinds[k] = Kind::Soft;
         }
-    }
+        is_soft
+    });
     kinds
 }
 
@@ -230,19 +227,12 @@ fn caster(values: &Values<'_>, kinds: &[Kind]) -> Vec<f32> {
             continue;
         }
         is_seen[start] = true;
-        let (mut part, mut next) = (vec![start], 0);
         let [mut soft, mut all] = [0, 0];
-        while let Some(&i) = part.get(next) {
-            next += 1;
-            for k in beside(i, width, count) {
-                all += usize::from(kinds[k] != Kind::Other);
-                soft += usize::from(kinds[k] == Kind::Soft);
-                if !is_seen[k] {
-                    is_seen[k] = true;
-                    part.push(k);
-                }
-            }
-        }
+        let part = flooded(vec![start], [width, count], |_, k| {
+            all += usize::from(kinds[k] != Kind::Other);
+            soft += usize::from(kinds[k] == Kind::Soft);
+            !std::mem::replace(&mut is_seen[k], true)
+        });
         if part.len() >= LEAST_PIXELS && soft as f32 > SURROUNDED * all as f32 {
             part.into_iter().for_each(|i| is_cast[i] = true);
         }
