@@ -23,7 +23,7 @@
 
 use kurbo::{BezPath, Line, ParamCurve, PathEl, PathSeg, QuadBez, Rect};
 
-use super::shape::Shape;
+use super::shape::{Shape, ShapeKind};
 use crate::error::{Error, ErrorKind, Result};
 use crate::math::{Point, Vec2};
 
@@ -116,6 +116,15 @@ impl Path {
     /// The circle, ellipse or rectangle that the path is.
     pub fn shape(&self) -> Option<Shape> {
         self.shape
+    }
+
+    /// The path as the circle, ellipse or round rectangle that its points are those of, as arrays of coordinates have no more of
+    /// it.
+    #[must_use]
+    pub fn recognised(self) -> Self {
+        let points: Vec<_> = self.points.iter().map(|p| (p.at, p.is_on)).collect();
+        let shape = ShapeKind::shape_of(&points).filter(|_| self.closed);
+        shape.map_or(self, Shape::path)
     }
 
     /// The rectangle whose corners the path has, in either sense: a file has one element for both.
@@ -322,6 +331,35 @@ mod tests {
             is_on,
         };
         Path::new(points.iter().map(point).collect(), closed)
+    }
+
+    #[test]
+    fn a_shape_is_recognised_by_its_coordinates() {
+        let center = Point::new(1310.29, 33.61);
+        let shapes = [
+            Shape::circle(center, 20.52),
+            Shape::ellipse(center, [9.5, 30.0]),
+            Shape::rect([center, Point::new(1400.5, 80.25)], 6.0),
+        ];
+        for shape in shapes {
+            let single = |p: Point| crate::math::point(crate::math::xy(p));
+            let plain = shape.path().map(single);
+            assert_eq!(plain.shape(), None);
+            let again = plain.clone().recognised().shape().unwrap();
+            assert_eq!(again.kind(), shape.kind());
+            let places = again.path().points().to_vec();
+            let mut pairs = places.iter().zip(plain.points());
+            assert!(pairs.all(|(a, b)| (a.at - b.at).hypot() < 1e-3));
+            let first = plain.points()[0].at;
+            let bent = plain.map(|p| {
+                if p == first {
+                    p + Vec2::new(0.01, 0.0)
+                } else {
+                    p
+                }
+            });
+            assert_eq!(bent.recognised().shape(), None);
+        }
     }
 
     #[test]

@@ -43,6 +43,10 @@ pub enum Shape {
 /// Control points of a quarter turn; the fewest that suffice are taken.
 const QUARTERS: [usize; 4] = [2, 4, 8, 16];
 
+/// Farthest that the points of a shape are from their places, px: more than single precision takes from a page of 8,192 px, and less
+/// than half of what a file's second decimal tells.
+const EXACT: f64 = 1e-3;
+
 /// Farthest that a ring bulges from its shape, px.
 const BULGE: f64 = 0.02;
 
@@ -197,6 +201,27 @@ impl ShapeKind {
         // Points depend on sides and radii linearly.
         let frame = self.nearest_frame(change, &places);
         put(change, frame, &places);
+    }
+
+    /// The shape whose path has these points, each with whether it is on the path, as exactly as single precision gives them.
+    pub(super) fn shape_of(points: &[(Point, bool)]) -> Option<Shape> {
+        let at: Vec<[f32; 2]> = points.iter().map(|(p, _)| math::xy(*p)).collect();
+        let exactly = |kind: Self| {
+            let corners = if kind == Self::RoundRect { 8 } else { 0 };
+            let turns = points.len().checked_sub(corners)?;
+            let places = QUARTERS
+                .contains(&(turns / 4))
+                .then(|| kind.places(turns / 4))?;
+            let shape = kind.nearest(&at).filter(|_| places.len() == at.len())?;
+            let is_exact = |((p, is_on), place): (&(Point, bool), &Place)| {
+                let away = shape.frame().at(place) - *p;
+                *is_on == place.is_on && away.x.abs().max(away.y.abs()) < EXACT
+            };
+            points.iter().zip(&places).all(is_exact).then_some(shape)
+        };
+        [Self::Circle, Self::Ellipse, Self::RoundRect]
+            .into_iter()
+            .find_map(exactly)
     }
 
     /// The places of a path of so many points.
