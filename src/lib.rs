@@ -49,9 +49,9 @@
 //! math  rng                       points, draws by counter
 //! coverage  scene  image          soft edges, drawings, pictures
 //! metrics  loss  optim            measures, losses, optimisers
-//! damage                          picture → the picture that is meant
+//! restore                         picture → the picture that is meant
 //! shading                         smooth blocks of a picture → the gradient that they are of
-//! render                          marks → canvas, ∂L/∂canvas → ∂L/∂marks, worth
+//! render                          marks → canvas, ∂L/∂canvas → ∂L/∂marks, contributions
 //! seed                            residual → candidates, ranked by gain in closed form
 //! trace                           residual → areas, and strokes along the lines that are seen
 //! outline                         stroke → the rings around it
@@ -76,7 +76,7 @@
 //! | word | meaning |
 //! | --- | --- |
 //! | target | the picture to reproduce, with or without alpha |
-//! | damage | what a picture has been through and nobody meant, such as noise; see [`damage`] |
+//! | damage | what a picture has been through and nobody meant, such as noise; see [`restore`] |
 //! | doubt | how far the picture that is meant may be from the truth, RMS in levels of 8 bits |
 //! | details | letters, dots, thin lines: small things that nothing around hides |
 //! | mark | one element of a drawing: a stroke or an area; see [`scene::Mark`] |
@@ -120,14 +120,14 @@
 //! | line | a run of the skeleton that goes straight through crossings; tracing lays a stroke along it |
 //! | bridge | the part of a line that another one covers |
 //! | gain | squared error that a candidate would remove, in closed form |
-//! | worth | squared error that leaving a stroke out would add, exactly |
+//! | contribution | squared error that leaving a stroke out would add, exactly |
 //! | price | squared error that a stroke has to remove to stay; it grows with the bytes of the stroke, and rises in a drawing better than its quality |
 //! | quality | sets the price: each byte has to remove as much squared error as one pixel has at this many dB |
 //! | frozen, free | strokes that are kept as they are; strokes that are fitted |
 //! | polish | joint fit of all free strokes |
 //! | dense, sparse | of points: how many pixels there are for each that a budget allows; dense ones change the polish |
 //! | jitter | differentiating strokes a little beside their places, so that a drawing depends less on antialiasing |
-//! | relocation | moving the strokes of least worth to where candidates gain more, during the polish |
+//! | relocation | moving the strokes of least contribution to where candidates gain more, during the polish |
 //! | survey | how the squared error depends on the vertices of all strokes, so that the gain of a new point is known |
 //! | edit | marks or points in the place of others, with the squared error that it is foreseen to remove and the price of the bytes that it saves; it is made if it pays as rendered |
 //! | join | making one stroke of two that look alike and meet end to end |
@@ -138,7 +138,7 @@
 //! | session | a fit under way: all that its phases hand around |
 //! | surface | one matte's target, backdrop and canvas; a drawing has one, a transparent drawing two |
 //! | course | how long a descent runs, at what step sizes and with which edge |
-//! | memento | what a drawing was, to the bit |
+//! | snapshot | what a drawing was, to the bit |
 //! | aim | what settling descends towards: the target less resvg's offset |
 //! | preferred colour | the colour of a stroke that fits best while all other strokes stay as they are |
 //! | rehearsal | writing and rendering an unfinished drawing only to learn how long that takes |
@@ -151,7 +151,7 @@
 //! | pen | a colour and a width that many opaque strokes share; where pens are given, a width that strokes may have |
 //! | sharing | giving strokes the same widths and colours where that costs little |
 //! | tie | holds numbers of strokes equal while they are fitted |
-//! | held | of shapes, and of lines that are exactly level or upright: they stay such while their points are fitted |
+//! | constraints | of shapes, and of lines that are exactly level or upright: they stay such while their points are fitted |
 //! | seed | key of all random draws; *seeding* is the search for candidates |
 //! | grace | how long a fit that is asked to stop may take to finish its drawing |
 //! | kept background | a background that stays although a given palette has nothing like it |
@@ -186,7 +186,6 @@ pub mod cli;
 #[doc(hidden)]
 pub mod clock;
 pub mod coverage;
-pub mod damage;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod engines;
@@ -201,6 +200,7 @@ pub mod optim;
 mod outline;
 pub mod render;
 pub mod report;
+pub mod restore;
 #[doc(hidden)]
 pub mod rng;
 pub mod scene;

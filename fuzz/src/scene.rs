@@ -174,11 +174,11 @@ fn draw(scene: &Scene, softness: Softness) -> Option<()> {
     let objective = Objective::new(Loss::L2, &target);
     GRADIENTS.with_borrow_mut(|gradients| {
         let backdrop = Backdrop::Color(background);
-        renderer.backward_with_worth(&strokes, softness, backdrop, &objective, gradients);
+        renderer.backward_with_contributions(&strokes, softness, backdrop, &objective, gradients);
         let picture = canvas.to_image();
         let is_finite = picture.planes().iter().all(|plane| finite(plane))
             && finite(&gradients.strokes)
-            && finite(&gradients.worth);
+            && finite(&gradients.contribution);
         is_finite.then_some(())
     })
 }

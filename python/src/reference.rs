@@ -74,7 +74,7 @@ pub(crate) fn reference_worth<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let (reference, scene) = prepared(setting, edge.get(), &marks.get().0);
     let error: &[Rgb] = error.as_slice()?.as_chunks().0;
-    let worth = py.detach(|| {
+    let contribution = py.detach(|| {
         let scene = on(&scene, background);
         let canvas = reference.render(&scene);
         let targets = canvas.iter().zip(error);
@@ -83,7 +83,7 @@ pub(crate) fn reference_worth<'py>(
             .collect();
         reference.leave_one_out(&scene, &target)
     });
-    Ok(PyArray1::from_vec(py, worth))
+    Ok(PyArray1::from_vec(py, contribution))
 }
 
 fn prepared((width, height, eps): Setting, edge: &Edge, strokes: &[Stroke]) -> (Reference, Scene) {

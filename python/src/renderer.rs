@@ -161,7 +161,7 @@ impl Renderer {
     }
 
     /// For each mark, by how much the sum of squares of `error` = canvas − target grows when the mark is left out.
-    fn worth<'py>(
+    fn contribution<'py>(
         &self,
         py: Python<'py>,
         marks: &Bound<'py, PackedMarks>,
@@ -172,7 +172,7 @@ impl Renderer {
         let (strokes, softness, grid) = (&marks.get().0, edge.get().softness(), self.grid);
         let behind = Behind::of(&background)?;
         let error = error.as_slice()?;
-        let worth = self.with(py, |passes| {
+        let contribution = self.with(py, |passes| {
             let loss = Given::new(grid, error, |pixel: &[f32; 3]| *pixel);
             let Passes {
                 renderer,
@@ -180,13 +180,13 @@ impl Renderer {
                 ..
             } = passes;
             behind.with(grid, |backdrop| {
-                renderer.backward_with_worth(strokes, softness, backdrop, &loss, gradients);
+                renderer.backward_with_contributions(strokes, softness, backdrop, &loss, gradients);
             });
-            loss.is_finite().then(|| gradients.worth.clone())
+            loss.is_finite().then(|| gradients.contribution.clone())
         })?;
         Ok(PyArray1::from_vec(
             py,
-            worth.ok_or_else(|| not_finite("error"))?,
+            contribution.ok_or_else(|| not_finite("error"))?,
         ))
     }
 }

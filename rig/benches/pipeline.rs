@@ -165,7 +165,13 @@ fn passes(
     group.bench_function(BenchmarkId::new("backward_with_worth", name), |b| {
         b.iter(|| {
             let strokes = black_box(strokes);
-            renderer.backward_with_worth(strokes, EDGE, backdrop, &objective, &mut gradients);
+            renderer.backward_with_contributions(
+                strokes,
+                EDGE,
+                backdrop,
+                &objective,
+                &mut gradients,
+            );
         });
     });
 }

@@ -88,7 +88,7 @@ fn tell_full(options: &Options, before: usize, verbosity: Verbosity) {
     let remedy = format_args!("--strokes +{most} adds {most}");
     if most < before {
         verbosity.say(format_args!(
-            "hint: the {most} strokes of most worth stay of {before}: {remedy}"
+            "hint: the {most} strokes that contribute most stay of {before}: {remedy}"
         ));
     } else if most == before {
         verbosity.say(format_args!(

@@ -4,7 +4,7 @@
 //! optimiser, so that a checkpoint can keep it.
 
 pub(super) mod anneal;
-pub(super) mod held;
+pub(super) mod constraints;
 pub(super) mod jitter;
 pub(super) mod ties;
 
@@ -17,7 +17,7 @@ use super::time::Timer;
 use crate::optim::{Adam, AdamParams, Schedule};
 use crate::render::{Gradients, STYLE, Strokes};
 use anneal::Annealing;
-use held::Held;
+use constraints::Constraints;
 use jitter::Jitter;
 use ties::Ties;
 
@@ -108,7 +108,7 @@ pub(super) struct Descent {
     pub(super) ties: Ties,
     /// Shapes and lines that stay such: bands, unless there are more.
     #[serde(skip)]
-    pub(super) held: Held,
+    pub(super) constraints: Constraints,
     /// Gradients of the last step.
     #[serde(skip)]
     pub(super) gradients: Gradients,
@@ -126,15 +126,18 @@ impl Descent {
             background: Adam::new(3, BACKGROUND),
             scales: scales(&course.rates, drawing),
             ties: Ties::default(),
-            held: Held::forms(drawing.free()),
+            constraints: Constraints::forms(drawing.free()),
             gradients: Gradients::default(),
         }
     }
 
     /// The descent that keeps the bands of the drawing bands: a stored descent does not hold them.
     pub(super) fn holding_forms(self, drawing: &Drawing) -> Self {
-        let held = Held::forms(drawing.free());
-        Self { held, ..self }
+        let constraints = Constraints::forms(drawing.free());
+        Self {
+            constraints,
+            ..self
+        }
     }
 
     /// Number of iterations to come.
@@ -211,11 +214,11 @@ impl Descent {
         let slopes = &mut self.gradients.strokes;
         // Ties first: a projection onto a form must see the derivative of the whole group.
         self.ties.gather(slopes);
-        self.held.project(strokes, slopes);
+        self.constraints.project(strokes, slopes);
         let (adam, scales) = (&mut self.adam, &self.scales);
         // Adam scales each number by its own second moment, which would turn the step away from the gradient. Where points have to
         // move as one, they share the moment.
-        match squares(strokes, slopes, &self.held) {
+        match squares(strokes, slopes, &self.constraints) {
             None => adam.step_scaled(strokes.numbers_mut(), slopes, rate, scales),
             Some(squares) => {
                 adam.step_with_squares(strokes.numbers_mut(), slopes, rate, scales, &squares);
@@ -223,7 +226,7 @@ impl Descent {
         }
         // Bounds clamp single numbers and may break a form, so forms are restored after them.
         strokes.change(|_, stroke| bounds.apply(stroke));
-        self.held.restore(strokes);
+        self.constraints.restore(strokes);
         // The canvas of frozen strokes has the background in it, so it moves only while none is frozen.
         if course.joint.is_some() && drawing.is_thawed() && !drawing.background_fixed {
             let rate = rate * course.rates.color;
@@ -242,7 +245,7 @@ impl Descent {
     /// is new.
     pub(super) fn follow(&mut self, sources: &[Option<usize>], drawing: &Drawing) {
         self.adam.rearrange(1, sources);
-        self.held = Held::forms(drawing.free());
+        self.constraints = Constraints::forms(drawing.free());
         self.scales = scales(&self.course.rates, drawing);
     }
 }
@@ -278,8 +281,8 @@ fn adam(drawing: &Drawing, course: &Course) -> Adam<f32> {
 
 /// The squares of the derivatives, where both coordinates of an area's point share one: without that, points drift along
 /// the outline. All points of a shape share one. `None` if there is neither.
-fn squares(strokes: &Strokes, slopes: &[f32], held: &Held) -> Option<Vec<f32>> {
-    if !strokes.has_areas() && held.is_empty() {
+fn squares(strokes: &Strokes, slopes: &[f32], constraints: &Constraints) -> Option<Vec<f32>> {
+    if !strokes.has_areas() && constraints.is_empty() {
         return None;
     }
     let mut squares: Vec<f32> = slopes.iter().map(|slope| slope * slope).collect();
@@ -292,7 +295,7 @@ fn squares(strokes: &Strokes, slopes: &[f32], held: &Held) -> Option<Vec<f32>> {
             *point = [point[0] + point[1]; 2];
         }
     }
-    held.share(strokes, &mut squares);
+    constraints.share(strokes, &mut squares);
     Some(squares)
 }
 

@@ -188,7 +188,7 @@ impl Drawing {
     }
 
     /// Freezes all strokes. They are rendered from scratch: rendered on top of the canvas of earlier frozen strokes,
-    /// they would differ in the last bits from what a [`Memento`] restores.
+    /// they would differ in the last bits from what a [`Snapshot`] restores.
     pub(super) fn freeze(&mut self) {
         self.thaw();
         self.render();
@@ -307,8 +307,8 @@ impl Drawing {
     }
 
     /// The mean loss over the surfaces with softness `edge`, its derivatives with respect to the free strokes and,
-    /// `WITH_WORTH`, the worth of each. The loss is against the picture, or against `targets`, one per surface.
-    pub(super) fn differentiate<const WITH_WORTH: bool>(
+    /// `WITH_CONTRIBUTIONS`, the contribution of each. The loss is against the picture, or against `targets`, one per surface.
+    pub(super) fn differentiate<const WITH_CONTRIBUTIONS: bool>(
         &mut self,
         edge: Softness,
         targets: Option<&[Target]>,
@@ -316,7 +316,7 @@ impl Drawing {
     ) {
         let (free, frozen) = (&self.free, self.frozen.len());
         // Two mattes at once cost little more than one, as only colours differ. Worth is known of one at a time.
-        if let ([black, white], false) = (self.surfaces.as_slice(), WITH_WORTH) {
+        if let ([black, white], false) = (self.surfaces.as_slice(), WITH_CONTRIBUTIONS) {
             let backdrops = [black, white].map(|surface| surface.backdrop(frozen));
             let [of_black, of_white] = [0, 1]
                 .map(|i| self.surfaces[i].objective(targets.and_then(|targets| targets.get(i))));
@@ -333,8 +333,8 @@ impl Drawing {
             let backdrop = surface.backdrop(frozen);
             let objective = surface.objective(targets.and_then(|targets| targets.get(i)));
             let renderer = &mut self.renderer;
-            if WITH_WORTH {
-                renderer.backward_with_worth(free, edge, backdrop, &objective, out);
+            if WITH_CONTRIBUTIONS {
+                renderer.backward_with_contributions(free, edge, backdrop, &objective, out);
             } else {
                 renderer.backward(free, edge, backdrop, &objective, out);
             }
@@ -364,7 +364,7 @@ impl Drawing {
         survey
     }
 
-    /// Loss, gradients and worth of the free strokes at the final edge.
+    /// Loss, gradients and contributions of the free strokes at the final edge.
     pub(super) fn judge(&mut self) -> Gradients {
         let mut gradients = Gradients::default();
         self.differentiate::<true>(self.edge, None, &mut gradients);
@@ -372,7 +372,10 @@ impl Drawing {
         self.known.mse = Some(gradients.loss);
         // Worth is a sum over pixels of this resolution, and is wanted in pixels of the picture.
         let area = self.pixel_area();
-        gradients.worth.iter_mut().for_each(|worth| *worth *= area);
+        gradients
+            .contribution
+            .iter_mut()
+            .for_each(|contribution| *contribution *= area);
         gradients
     }
 
@@ -421,7 +424,7 @@ impl Drawing {
 
 /// A copy of a drawing's state, from which it is restored to the bit.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(super) struct Memento {
+pub(super) struct Snapshot {
     halvings: usize,
     /// The background's colour, unless the drawing is on top of a document.
     color: Option<Rgb>,
@@ -433,8 +436,8 @@ pub(super) struct Memento {
 
 impl Drawing {
     /// A copy of the current state.
-    pub(super) fn memento(&self) -> Memento {
-        Memento {
+    pub(super) fn snapshot(&self) -> Snapshot {
+        Snapshot {
             halvings: self.surface().halvings(),
             color: self.surface().color(),
             strokes: self.all(),
@@ -445,32 +448,32 @@ impl Drawing {
     }
 
     /// Restores the drawing, its counters included.
-    pub(super) fn restore(&mut self, memento: Memento) {
-        if let (Some(color), Some(was)) = (self.surfaces[0].color_mut(), memento.color) {
+    pub(super) fn restore(&mut self, snapshot: Snapshot) {
+        if let (Some(color), Some(was)) = (self.surfaces[0].color_mut(), snapshot.color) {
             *color = was;
         }
         // The target of the strokes has changed only if the resolution has, or if some of them were frozen.
-        if memento.halvings != self.surface().halvings() || !self.is_thawed() {
-            self.halve(memento.halvings);
+        if snapshot.halvings != self.surface().halvings() || !self.is_thawed() {
+            self.halve(snapshot.halvings);
         }
         // All strokes are free at first. Those that were frozen are frozen again, in the same order of renders.
-        *self.free_mut() = memento.strokes;
-        self.stage_of = memento.stage_of;
-        self.counters = memento.counters;
-        if memento.frozen > 0 {
+        *self.free_mut() = snapshot.strokes;
+        self.stage_of = snapshot.stage_of;
+        self.counters = snapshot.counters;
+        if snapshot.frozen > 0 {
             // Only the frozen strokes may be there when they are rendered.
-            let free = self.free_mut().split_off(memento.frozen);
+            let free = self.free_mut().split_off(snapshot.frozen);
             self.freeze();
             *self.free_mut() = free;
         }
     }
 
     /// Restores the drawing, but keeps its counters, so that no search repeats the random draws of an earlier one.
-    pub(super) fn revert(&mut self, memento: Memento) {
+    pub(super) fn revert(&mut self, snapshot: Snapshot) {
         let counters = self.counters;
-        self.restore(Memento {
+        self.restore(Snapshot {
             counters,
-            ..memento
+            ..snapshot
         });
     }
 }

@@ -12,8 +12,8 @@
 //! | `joins` | one stroke for two that meet |
 
 pub(super) mod joins;
+pub(super) mod model;
 pub(super) mod points;
-pub(super) mod terrain;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -105,12 +105,12 @@ pub(super) fn written_points(stroke: StrokeRef<'_>) -> usize {
 
 /// An edit for each free mark that removes it, and saves its `price`.
 pub(super) fn drop_marks(drawing: &mut Drawing, price: impl Fn(StrokeRef<'_>) -> f32) -> Vec<Edit> {
-    let worth = drawing.judge().worth;
-    let marks = drawing.free().iter().zip(worth).enumerate();
-    let loss = |(i, (mark, worth)): (usize, (StrokeRef<'_>, f32))| {
+    let contribution = drawing.judge().contribution;
+    let marks = drawing.free().iter().zip(contribution).enumerate();
+    let loss = |(i, (mark, contribution)): (usize, (StrokeRef<'_>, f32))| {
         // A mark that is not finite goes at any price.
         let (gain, price) = match mark.is_finite() {
-            true => (-worth, price(mark)),
+            true => (-contribution, price(mark)),
             false => (f32::INFINITY, f32::INFINITY),
         };
         Edit {
@@ -121,7 +121,7 @@ pub(super) fn drop_marks(drawing: &mut Drawing, price: impl Fn(StrokeRef<'_>) ->
     marks.map(loss).collect()
 }
 
-/// The edits that remove the `count` free marks of least worth.
+/// The edits that remove the `count` free marks of least contribution.
 pub(super) fn least(drawing: &mut Drawing, count: usize) -> Vec<Edit> {
     let mut edits = drop_marks(drawing, |_| 0.0);
     edits.sort_by(|a, b| b.gain.total_cmp(&a.gain));

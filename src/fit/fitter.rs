@@ -11,9 +11,9 @@ use super::run::checkpoint::Checkpoint;
 use super::run::progress::{CancelToken, Observer, Watch};
 use super::task::Task;
 use crate::clock::Instant;
-use crate::damage;
 use crate::error::Result;
 use crate::image::Image;
+use crate::restore;
 
 /// Draws pictures with strokes.
 ///
@@ -136,7 +136,7 @@ impl<'a> Fitter<'a> {
         let is_literal = task.config.literal || task.config.budget.psnr_db.is_some();
         let restored = match is_literal {
             true => None,
-            false => pool.install(|| damage::meant(picture))?,
+            false => pool.install(|| restore::restored(picture))?,
         };
         task.doubt = restored.as_ref().map_or(0.0, |r| r.damage.doubt());
         let target = restored.as_ref().map_or(picture, |r| &r.picture);

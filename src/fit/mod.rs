@@ -2,7 +2,7 @@
 //!
 //! A [`Fitter`] adds strokes in stages, on a background or on a [`Base`]. Each stage seeds new strokes where
 //! the residual is largest, fits them briefly with all earlier strokes frozen, and keeps those that pay. The polish
-//! then fits all strokes jointly, and relocates those of least worth to where more is to be gained; small things that got lost
+//! then fits all strokes jointly, and relocates those of least contribution to where more is to be gained; small things that got lost
 //! on the way are traced again. If the file may have
 //! only a few colours or pens, the strokes are restricted to those. Settling takes the last steps against what the
 //! written file really looks like. Finally the fit adds or removes strokes, and fits them again, until the file is as faithful and as short as the budgets ask for.

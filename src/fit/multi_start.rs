@@ -45,7 +45,7 @@ const BEYOND_DB: f64 = 16.0;
 /// guesses.
 const FEW_MARKS: usize = 30;
 const FAITHFUL_DB: f64 = 38.0;
-// Bounds of a finished drawing by strokes alone, measured on ten pictures that have doubtful areas.
+// Bounds of a finished drawing by strokes alone, measured on nine pictures that have doubtful areas.
 /// Its bytes, in units of those before the polish, which still has strokes that will not pay: 0.36 to 0.97, of eight above 0.45.
 const BYTES_AFTER_POLISH: f64 = 0.45;
 /// Its cost, in units of that after the polish: 0.98 to 1.23.

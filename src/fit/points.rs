@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::budget::price::Price;
 use super::budget::{self, typical_bytes};
 use super::drawing::Drawing;
-use super::edits::terrain::{LEAST, Terrain};
+use super::edits::model::{LEAST, QuadraticModel};
 use super::edits::{
     self, Change, Edit, Room, TRIALS, apply_priced, choose, disjoint, drop_marks, joins,
 };
@@ -52,13 +52,13 @@ pub(super) fn rearrange(session: &mut Session<'_>, done: f32) -> Vec<Option<usiz
     let is_priced = config.quality_for(drawing.pixels()).is_some();
     let spare = match has_strokes || is_priced {
         true => 0.0,
-        false => quantile_worth(drawing, SPARED),
+        false => quantile_contribution(drawing, SPARED),
     };
     let most = config.points.unwrap_or(usize::MAX);
     let price = session.price.in_drawing(drawing);
-    let worth = |stroke: StrokeRef<'_>| price.least_worth(stroke).max(spare);
+    let contribution = |stroke: StrokeRef<'_>| price.least_contribution(stroke).max(spare);
     // Joins first. They free points that the edits of paths can use.
-    let joins = joins::joins(drawing.free(), most, worth);
+    let joins = joins::joins(drawing.free(), most, contribution);
     let joined = apply_priced(drawing, joins, TRIALS).sources;
     let edited = edit(session, spare);
     // Two rearrangements in a row: a number's source is the source of its source.
@@ -88,10 +88,11 @@ pub(super) fn prune(drawing: &mut Drawing, price: Price, prunings: usize) {
 fn losses(drawing: &mut Drawing, price: Price) -> Vec<Edit> {
     let to_keep = [false, true].map(|of_area| price.of_point(of_area)[1]);
     let survey = drawing.survey();
-    let terrains = Terrain::all(&survey, drawing.free());
-    let loss =
-        |terrain: &Terrain<'_>| edits::points::drop(terrain, to_keep[usize::from(terrain.is_ring)]);
-    terrains.par_iter().filter_map(loss).collect()
+    let models = QuadraticModel::all(&survey, drawing.free());
+    let loss = |model: &QuadraticModel<'_>| {
+        edits::points::drop(model, to_keep[usize::from(model.is_ring)])
+    };
+    models.par_iter().filter_map(loss).collect()
 }
 
 /// Takes away about `excess` bytes of free strokes and of their points, or all of them: what costs least for its bytes. Returns the
@@ -103,7 +104,7 @@ pub(super) fn shed(drawing: &mut Drawing, price: Price, excess: usize) -> Vec<Op
     // Every pass removes at least one mark or point, so that the loop ends.
     while left > 0 && !drawing.free().is_empty() {
         let mut edits = losses(drawing, price);
-        let drops = drop_marks(drawing, |mark| price.least_worth(mark));
+        let drops = drop_marks(drawing, |mark| price.least_contribution(mark));
         // Bytes beyond a budget have to go, whatever they are worth.
         edits.extend(untried(drops));
         let point_bytes = price.point_bytes();
@@ -157,15 +158,18 @@ fn tolerated(mut edits: Vec<Edit>) -> Vec<Edit> {
 
 /// Quantile of stroke contribution. Under a binding budget, a stroke below it is expendable: its bytes would be used where they
 /// gain more, and a point has to gain as much for its bytes.
-fn quantile_worth(drawing: &mut Drawing, share: f32) -> f32 {
-    let mut worth = drawing.judge().worth;
-    if worth.is_empty() {
+fn quantile_contribution(drawing: &mut Drawing, share: f32) -> f32 {
+    let mut contribution = drawing.judge().contribution;
+    if contribution.is_empty() {
         return 0.0;
     }
     // Select rather than sort: only the quantile is needed.
-    let at = (share * worth.len() as f32) as usize;
-    let at = at.min(worth.len() - 1);
-    worth.select_nth_unstable_by(at, f32::total_cmp).1.max(0.0)
+    let at = (share * contribution.len() as f32) as usize;
+    let at = at.min(contribution.len() - 1);
+    contribution
+        .select_nth_unstable_by(at, f32::total_cmp)
+        .1
+        .max(0.0)
 }
 
 /// Makes an edit of each path that gains by one. A stroke could be spared that is worth `spare`.
@@ -186,17 +190,17 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
     };
     let prices = [false, true].map(least);
     let survey = drawing.survey();
-    let terrains = Terrain::all(&survey, drawing.free());
-    let propose = |terrain: &Terrain<'_>| {
-        let [to_add, to_keep] = prices[usize::from(terrain.is_ring)];
-        let fits = |edit: &Edit| terrain.is_ring || terrain.written_points(edit) <= most;
+    let models = QuadraticModel::all(&survey, drawing.free());
+    let propose = |model: &QuadraticModel<'_>| {
+        let [to_add, to_keep] = prices[usize::from(model.is_ring)];
+        let fits = |edit: &Edit| model.is_ring || model.written_points(edit) <= most;
         // One stroke may have most of all points.
         let (loss, (toggle, new)) = rayon::join(
-            || edits::points::remove(terrain, to_keep),
+            || edits::points::remove(model, to_keep),
             || {
-                let toggled = toggles.then_some(terrain);
+                let toggled = toggles.then_some(model);
                 let toggle = toggled.and_then(|of| edits::points::toggle(of, to_keep * 0.1));
-                let may_grow = (terrain.stroke.points.len() < most).then_some(terrain);
+                let may_grow = (model.stroke.points.len() < most).then_some(model);
                 let new = may_grow.and_then(|of| edits::points::add(of, to_add));
                 (toggle.filter(fits), new.filter(fits))
             },
@@ -205,8 +209,8 @@ fn edit(session: &mut Session<'_>, spare: f32) -> Vec<Option<usize>> {
         let toggle = toggle.filter(|_| !loss.as_ref().is_some_and(|loss| loss.surplus() > 0.0));
         [loss, toggle, new].into_iter().flatten()
     };
-    let proposed: Vec<Edit> = terrains.par_iter().flat_map_iter(propose).collect();
-    let paths = terrains.len() as f32;
+    let proposed: Vec<Edit> = models.par_iter().flat_map_iter(propose).collect();
+    let paths = models.len() as f32;
     // Limits of one pass, so that descent adapts the paths before the next one.
     let room = Room {
         free: room,

@@ -39,7 +39,7 @@ pub struct Recipe {
     pub polish: Polish,
     /// Changes where points are dense.
     pub dense: Dense,
-    /// Relocation: strokes of little worth make room for better ones during the polish.
+    /// Relocation: strokes that contribute little make room for better ones during the polish.
     pub relocation: Relocation,
     /// Most rounds of settling, the last steps, against renders of the written file; 0 for none. Settling as a whole: +0.1 dB
     /// at 34 dB, +1.8 at 40. Drafts have none: one round took a fifth of a draft's time for 0.09 dB, and 40 more iterations
@@ -102,7 +102,7 @@ pub struct Dense {
     pub jitter: f32,
 }
 
-/// Relocation: strokes of little worth make room for better ones during the polish.
+/// Relocation: strokes that contribute little make room for better ones during the polish.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relocation {
     /// Iterations between relocations. 60, 30, 20: −0.10, 0, +0.06 dB at a fifth more time, before there were points. 24

@@ -6,9 +6,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use super::base::Base;
 use super::drawing::focus::Focus;
-use crate::damage::Damage;
 use crate::image::Image;
 use crate::metrics::null_is_infinite;
+use crate::restore::Damage;
 use crate::scene::{Dropped, Scene};
 use crate::svg::WriteOptions;
 

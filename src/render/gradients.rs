@@ -10,8 +10,8 @@ pub struct Gradients {
     /// `∂L/∂backdrop`, summed over the pixels.
     pub backdrop: [f32; 3],
     /// Growth of the squared error (summed over pixels and channels) if the stroke is
-    /// left out, exactly; filled by [`Renderer::backward_with_worth`](super::Renderer::backward_with_worth) alone.
-    pub worth: Vec<f32>,
+    /// left out, exactly; filled by [`Renderer::backward_with_contributions`](super::Renderer::backward_with_contributions) alone.
+    pub contribution: Vec<f32>,
     /// Blocks of 16 px that were visited: the work done.
     pub blocks: u64,
 }
@@ -36,15 +36,18 @@ impl Gradients {
         self.loss += other.loss;
         self.blocks += other.blocks;
         add(&mut self.backdrop, &other.backdrop);
-        add(&mut self.worth, &other.worth);
+        add(&mut self.contribution, &other.contribution);
         add(&mut self.strokes, &other.strokes);
     }
 
-    /// Multiplies the loss, its derivatives and the worth by `factor`.
+    /// Multiplies the loss, its derivatives and the contribution by `factor`.
     pub(crate) fn scale(&mut self, factor: f32) {
         self.loss *= f64::from(factor);
         let values = self.strokes.iter_mut();
-        for value in values.chain(&mut self.backdrop).chain(&mut self.worth) {
+        for value in values
+            .chain(&mut self.backdrop)
+            .chain(&mut self.contribution)
+        {
             *value *= factor;
         }
     }

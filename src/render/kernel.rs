@@ -3,14 +3,14 @@
 //! Pass 1 goes front to back: it accumulates the colour seen, `C ← C + T·m·c`, and the
 //! transmittance `T ← T·(1 − m)`, and keeps `T`, `m`, `o·σ'` and `1/|q|` of every block it visits.
 //! A block that stays opaque even when any one stroke is taken away leaves the set of live blocks, and
-//! nothing behind it is evaluated: neither a gradient nor a stroke's worth depends on it.
+//! nothing behind it is evaluated: neither a gradient nor a stroke's contribution depends on it.
 //!
 //! Pass 2 goes back to front over the same blocks with the colour behind, `B`:
 //!
 //! ```text
 //! ∂L/∂m = T·g·(c − B)      ∂L/∂c = Σ T·m·g      ∂L/∂d = ∂L/∂m · o · σ'(d)
 //! ∂d/∂r = 1                ∂d/∂a = u·(1 − h)    ∂d/∂b = u·h          u = q/|q|
-//! worth  = Σ 2e·δ + δ²     δ = −T·m·(c − B)     B ← B + m·(c − B)
+//! contribution = Σ 2e·δ + δ²     δ = −T·m·(c − B)     B ← B + m·(c − B)
 //! ```
 //!
 //! No step divides by `1 − m`, so opaque strokes are as exact as others. `h` is held fixed in the
@@ -409,7 +409,7 @@ fn front_to_back<S: Simd, E: SoftEdge>(simd: S, edge: E, job: &TileJob<'_>, scra
     }
 }
 
-/// Pass 2, over the blocks that pass 1 visited. `scratch.gradient` is given, and `scratch.error` if worth is asked for;
+/// Pass 2, over the blocks that pass 1 visited. `scratch.gradient` is given, and `scratch.error` if contribution is asked for;
 /// `scratch.color` becomes the colour behind.
 #[inline(always)]
 fn back_to_front<S: Simd, X: Extras>(
@@ -507,7 +507,7 @@ fn back_to_front<S: Simd, X: Extras>(
                 sums.stiffness.push(shifts.stiffness());
             }
         }
-        // In the core, coverage does not change with the shape: only colour, opacity and worth have a part in it.
+        // In the core, coverage does not change with the shape: only colour, opacity and contribution have a part in it.
         for (block, t) in members(visit.core).zip(through) {
             let (rgb, opacity) = brush.at(simd, block);
             stroke.blend::<X>(simd, opacity, load(simd, t), &rgb, grounds.at(block));
@@ -521,7 +521,11 @@ fn back_to_front<S: Simd, X: Extras>(
                 job.is_area(slot),
                 brush.inks.is_some(),
             ),
-            worth: if X::WORTH { stroke.worth() } else { 0.0 },
+            contribution: if X::CONTRIBUTIONS {
+                stroke.contribution()
+            } else {
+                0.0
+            },
         });
     }
     [total(backdrop[0]), total(backdrop[1]), total(backdrop[2])]
@@ -556,8 +560,8 @@ pub(super) fn differentiate<L: CanvasLoss, X: Extras>(
         ..
     } = scratch;
     let value = dispatch!(level, _simd => {
-        // Only worth needs the error itself.
-        loss.tile(job.tile, color, X::WORTH.then_some(error), gradient)
+        // Only contributions need the error itself.
+        loss.tile(job.tile, color, X::CONTRIBUTIONS.then_some(error), gradient)
     });
     differentiate_canvas::<X>(level, job, value, scratch, sums)
 }

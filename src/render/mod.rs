@@ -206,7 +206,7 @@ impl Renderer {
     /// Sets how much errors count, for the backward passes alone: the roots `√w` of the weights, in the first channel of
     /// `roots`. These passes then multiply the canvas by the roots before they evaluate the loss.
     ///
-    /// If the target is multiplied by the same roots, the squared error, its derivatives and the worth are exactly those of the
+    /// If the target is multiplied by the same roots, the squared error, its derivatives and the contributions are exactly those of the
     /// weighted squared error: `(√w·c − √w·t)² = w·(c − t)²`.
     pub fn set_error_weights(&mut self, roots: &Canvas) {
         for (work, tile) in self.tiles.iter_mut().zip(roots.tiles()) {
@@ -319,8 +319,8 @@ impl Renderer {
         self.reduce(strokes, false, gradients);
     }
 
-    /// The derivatives, and every stroke's worth.
-    pub fn backward_with_worth<L: CanvasLoss>(
+    /// The derivatives, and every stroke's contribution.
+    pub fn backward_with_contributions<L: CanvasLoss>(
         &mut self,
         strokes: &Strokes,
         softness: Softness,
@@ -452,11 +452,11 @@ impl Renderer {
     }
 
     /// Adds the tiles' sums in tile order.
-    fn reduce(&mut self, strokes: &Strokes, with_worth: bool, gradients: &mut Gradients) {
-        let worths = if with_worth { strokes.len() } else { 0 };
+    fn reduce(&mut self, strokes: &Strokes, with_contributions: bool, gradients: &mut Gradients) {
+        let contributions = if with_contributions { strokes.len() } else { 0 };
         for (values, count) in [
             (&mut gradients.strokes, strokes.numbers().len()),
-            (&mut gradients.worth, worths),
+            (&mut gradients.contribution, contributions),
         ] {
             values.clear();
             values.resize(count, 0.0);
@@ -556,7 +556,7 @@ impl<L: CanvasLoss, X: Extras> BackwardPass for Single<'_, L, X> {
         layers: &mut [OfStroke],
     ) -> Option<TileSums> {
         // Worth depends on errors, which are not known.
-        if X::WORTH && !layers.is_empty() {
+        if X::CONTRIBUTIONS && !layers.is_empty() {
             return None;
         }
         self.frame.uniform_sums(tile, self.loss, polylines, layers)

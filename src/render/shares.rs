@@ -18,8 +18,8 @@ pub(super) struct Share<'a> {
     ids: Range<usize>,
     /// The derivatives by their numbers.
     numbers: &'a mut [f32],
-    /// Their worths; empty if nobody asks for them.
-    worths: &'a mut [f32],
+    /// Their contributions; empty if nobody asks for them.
+    contributions: &'a mut [f32],
     /// The derivatives by their vertices.
     slopes: &'a mut [[f32; 2]],
 }
@@ -33,20 +33,22 @@ pub(super) fn shares<'a>(
 ) -> Vec<Share<'a>> {
     // The cut depends on the number of strokes alone, not on the threads. Each share starts at a multiple of `size`.
     let size = CHUNK.max(strokes.len().div_ceil(SHARES));
-    let (mut numbers, mut worths) = (
+    let (mut numbers, mut contributions) = (
         gradients.strokes.as_mut_slice(),
-        gradients.worth.as_mut_slice(),
+        gradients.contribution.as_mut_slice(),
     );
     // Cut all sums at the same strokes, so that each share can be written without a lock.
     let share = |start: usize| {
         let ids = start..strokes.len().min(start + size);
         let count = strokes.range(ids.end - 1).end - strokes.range(start).start;
         let vertices = polylines.firsts[ids.end] - polylines.firsts[start];
-        let worth = ids.len().min(worths.len());
+        let contribution = ids.len().min(contributions.len());
         Share {
             ids,
             numbers: numbers.split_off_mut(..count).unwrap_or_default(),
-            worths: worths.split_off_mut(..worth).unwrap_or_default(),
+            contributions: contributions
+                .split_off_mut(..contribution)
+                .unwrap_or_default(),
             slopes: slopes
                 .split_off_mut(..vertices as usize)
                 .unwrap_or_default(),
@@ -74,8 +76,8 @@ impl Share<'_> {
                 // The style is the last numbers of a stroke. Its points get their part in `hand_back`.
                 let end = strokes.range(stroke).end - before;
                 add(&mut self.numbers[end - STYLE..end], &row.style);
-                if let Some(worth) = self.worths.get_mut(stroke - self.ids.start) {
-                    *worth += row.worth;
+                if let Some(contribution) = self.contributions.get_mut(stroke - self.ids.start) {
+                    *contribution += row.contribution;
                 }
             }
             // So are their segments.

@@ -16,9 +16,9 @@ use flate2::Compression;
 use flate2::write::{GzEncoder, ZlibEncoder};
 use serde::{Deserialize, Serialize};
 
-use crate::damage::Damage;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{Image, Remark};
+use crate::restore::Damage;
 
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use fit::{BaseEntry, Event, FitReport, PhaseEntry, Run};

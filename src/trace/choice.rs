@@ -73,11 +73,11 @@ pub(super) fn chosen(
         for (&i, pen) in group.strokes.iter().zip(pens.into_iter().flatten()) {
             let rank = rank(&strokes[i], &votes[i], flat, pixels);
             // On top of an area it gains what its regions do.
-            let worth = votes[i].iter().map(|(region, votes)| {
+            let contribution = votes[i].iter().map(|(region, votes)| {
                 let gain = gains.get(region).copied().unwrap_or_default();
                 gain * (votes / flat.size(*region)).min(1.0) / flat.mattes as f32
             });
-            places[i] = Some((rank, worth.sum::<f32>().max(strokes[i].gain)));
+            places[i] = Some((rank, contribution.sum::<f32>().max(strokes[i].gain)));
             // A width that was taken for that on the canvas.
             let own = &mut strokes[i].stroke.radius;
             if (*own - f64::from(pen.radius)).abs() > WRONG {

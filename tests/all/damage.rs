@@ -1,9 +1,9 @@
 //! Damage is recognised and not drawn; what is clean is drawn as it is.
 
-use strokefit::damage::{self, Damage};
 use strokefit::fit::{Background, Budget, Colors, Config, Fit, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
+use strokefit::restore::{self, Damage};
 use strokefit::verify::{Size, render};
 
 use crate::support::fits::picture;
@@ -67,10 +67,10 @@ fn clean_pictures_have_no_damage() {
         "noto-rocket.png",
     ];
     for name in names {
-        let found = damage::meant(&picture(name).flattened([1.0; 3])).unwrap();
+        let found = restore::restored(&picture(name).flattened([1.0; 3])).unwrap();
         assert_eq!(found.map(|meant| meant.damage), None, "{name}");
     }
-    assert!(damage::meant(&flat_art()).unwrap().is_none());
+    assert!(restore::restored(&flat_art()).unwrap().is_none());
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn with_alpha(picture: Image, is_binary: bool) -> Image {
 fn noise_on_transparency_is_not_drawn() {
     let clean = with_alpha(flat_art(), false);
     let noisy = with_alpha(noisy(&flat_art(), 8.0), false);
-    let meant = damage::meant(&noisy).unwrap().unwrap();
+    let meant = restore::restored(&noisy).unwrap().unwrap();
     assert!(
         (3.0..10.0).contains(&meant.damage.noise),
         "{:?}",
@@ -166,14 +166,14 @@ fn noise_on_transparency_is_not_drawn() {
         db(&meant.picture),
         db(&noisy)
     );
-    assert!(damage::meant(&clean).unwrap().is_none());
+    assert!(restore::restored(&clean).unwrap().is_none());
 }
 
 #[test]
 fn stairs_of_transparency_become_smooth() {
     let grey = Image::filled(128, 128, [0.4; 3]).unwrap();
     let (smooth, stairs) = (with_alpha(grey.clone(), false), with_alpha(grey, true));
-    let meant = damage::meant(&stairs).unwrap().unwrap();
+    let meant = restore::restored(&stairs).unwrap().unwrap();
     assert!(meant.damage.stairs);
     let mse = |picture: &Image| Quality::between(&smooth, picture).unwrap().mse;
     assert!(
@@ -196,7 +196,7 @@ fn specks_are_left_as_they_are() {
         .unwrap()
         .with_alpha(alpha.clone())
         .unwrap();
-    let meant = damage::meant(&picture).unwrap().unwrap();
+    let meant = restore::restored(&picture).unwrap().unwrap();
     assert!(meant.damage.stairs);
     let kept = meant.picture.alpha().unwrap();
     let is_kept = |i: usize| kept[i] == alpha[i];
@@ -223,7 +223,7 @@ fn squares_on_a_grid_are_meant() {
     let sprite = Image::from_fn(96, 96, 1, |x, y, _| {
         f32::from(u8::from((x / 8 + y / 8) % 3 == 0 || x / 8 == 4))
     });
-    assert!(damage::meant(&sprite.unwrap()).unwrap().is_none());
+    assert!(restore::restored(&sprite.unwrap()).unwrap().is_none());
 }
 
 #[test]
@@ -288,7 +288,7 @@ fn spots_of_scanned_paper_are_no_content() {
         paper * (1.0 - 0.8 * line(x, y))
     });
     let scan = noisy(&scan.unwrap(), 2.0);
-    let meant = damage::meant(&scan).unwrap().unwrap();
+    let meant = restore::restored(&scan).unwrap().unwrap();
     assert!(meant.damage.uneven_light);
     let pixels = (0..160 * 160).map(|i| (line(i % 160, i / 160), meant.picture.planes()[0][i]));
     let [paper, ink] = [false, true].map(|is_ink| {
@@ -363,7 +363,7 @@ fn level_and_upright_lines_have_no_stairs() {
     let dark = |i: usize| (i % 200 + 4) % 16 < 2 || (i / 200 + 4) % 16 < 2;
     let plane: Vec<f32> = (0..200 * 160).map(|i| f32::from(!dark(i))).collect();
     let picture = Image::new(200, 160, [plane.clone(), plane.clone(), plane]).unwrap();
-    assert!(damage::meant(&picture).unwrap().is_none());
+    assert!(restore::restored(&picture).unwrap().is_none());
     let fit = drawn(&picture, Config::default());
     assert!(fit.scene.len() < 40, "{} marks", fit.scene.len());
     let db = psnr_db(&fit, &picture);

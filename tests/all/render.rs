@@ -28,7 +28,7 @@ const IMAGE_TOLERANCE: f64 = 4e-4;
 /// Largest error of a gradient, relative to the largest gradient of its kind in the scene.
 const GRADIENT_TOLERANCE: f64 = 1e-3;
 
-/// Gradients and worths below this are as good as none.
+/// Gradients and contributions below this are as good as none.
 const FAINT: f64 = 1e-6;
 
 #[derive(Clone)]
@@ -409,7 +409,7 @@ fn rendered(case: &Case, simd: Simd, softness: Softness) -> Image {
 fn differentiated(case: &Case, simd: Simd, softness: Softness, loss: Loss) -> Gradients {
     let target = Canvas::from_image(&target(case));
     let mut gradients = Gradients::default();
-    renderer(case, simd).backward_with_worth(
+    renderer(case, simd).backward_with_contributions(
         &case.strokes,
         softness,
         Backdrop::Color(BACKGROUND),
@@ -583,7 +583,7 @@ fn slopes(loss: Loss, canvas: &[[f64; 3]], target: &[[f64; 3]]) -> Vec<[f64; 3]>
     slopes.as_chunks().0.to_vec()
 }
 
-/// Differences between the fast gradients and worths and the naive ones.
+/// Differences between the fast gradients and contributions and the naive ones.
 fn gradient_failures(case: &Case, coverage: Coverage, width: f32, loss: Loss) -> Vec<String> {
     let fast = differentiated(case, Simd::Auto, Softness { coverage, width }, loss);
     let (scene, oracle) = (naive(case), oracle(coverage, width));
@@ -613,9 +613,9 @@ fn gradient_failures(case: &Case, coverage: Coverage, width: f32, loss: Loss) ->
     for (&got, expected) in fast.backdrop.iter().zip(slow.background) {
         compare("background", f64::from(got), expected, 1e-4);
     }
-    let worths = oracle.leave_one_out(&scene, &target);
-    let largest = worths.iter().fold(FAINT, |m, v| m.max(v.abs()));
-    for (&got, expected) in fast.worth.iter().zip(worths) {
+    let contributions = oracle.leave_one_out(&scene, &target);
+    let largest = contributions.iter().fold(FAINT, |m, v| m.max(v.abs()));
+    for (&got, expected) in fast.contribution.iter().zip(contributions) {
         compare("worth", f64::from(got), expected, case.tolerance * largest);
     }
     failures
@@ -962,7 +962,7 @@ fn every_level_gives_the_same_bits() {
                     let strokes = g.strokes.iter();
                     strokes
                         .chain(&g.backdrop)
-                        .chain(&g.worth)
+                        .chain(&g.contribution)
                         .map(|v| v.to_bits())
                         .collect()
                 };
@@ -1004,7 +1004,11 @@ fn every_number_of_threads_gives_the_same_bits() {
             .build()
             .unwrap();
         let gradients = pool.install(|| differentiated(&case, Simd::Auto, softness, Loss::L2));
-        (gradients.strokes, gradients.worth, gradients.loss.to_bits())
+        (
+            gradients.strokes,
+            gradients.contribution,
+            gradients.loss.to_bits(),
+        )
     };
     let expected = with_threads(1);
     for threads in [2, 3, 8] {
@@ -1034,7 +1038,7 @@ fn strokes_with_numbers_that_are_not_finite_draw_nothing_and_spoil_nothing() {
                     let others = gradients.strokes.len();
                     assert_eq!(got.strokes[..others], gradients.strokes, "{name}");
                     assert!(got.strokes[others..].iter().all(|&v| v == 0.0), "{name}");
-                    assert_eq!(got.worth.last(), Some(&0.0), "{name}");
+                    assert_eq!(got.contribution.last(), Some(&0.0), "{name}");
                 }
             }
         }

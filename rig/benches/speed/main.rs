@@ -165,7 +165,7 @@ struct Speed {
     threads: usize,
     forward: f64,
     backward: f64,
-    worth: f64,
+    contribution: f64,
 }
 
 /// Prints pairs per second, by drawing and number of threads.
@@ -208,8 +208,8 @@ fn speed(drawing: &Workload, target: &Canvas, rounds: usize) {
             times.threads,
             rate(times.forward),
             rate(times.backward),
-            rate(times.worth),
-            speeds[0].worth / times.worth,
+            rate(times.contribution),
+            speeds[0].contribution / times.contribution,
         );
     }
 }
@@ -268,7 +268,7 @@ impl<'a> Bench<'a> {
             threads: self.pool.current_num_threads(),
             forward: f64::INFINITY,
             backward: f64::INFINITY,
-            worth: f64::INFINITY,
+            contribution: f64::INFINITY,
         }
     }
 
@@ -293,15 +293,16 @@ impl<'a> Bench<'a> {
                 1,
                 [&mut || renderer.backward(strokes, EDGE, backdrop, &objective, gradients)],
             );
-            let [worth] = fastest(
+            let [contribution] = fastest(
                 1,
                 [&mut || {
-                    renderer.backward_with_worth(strokes, EDGE, backdrop, &objective, gradients)
+                    renderer
+                        .backward_with_contributions(strokes, EDGE, backdrop, &objective, gradients)
                 }],
             );
             best.forward = best.forward.min(forward);
             best.backward = best.backward.min(backward);
-            best.worth = best.worth.min(worth);
+            best.contribution = best.contribution.min(contribution);
         });
     }
 

@@ -129,7 +129,7 @@ impl Price {
     }
 
     /// The least squared error that something of this price has to remove to come.
-    fn entry(&self, price: f32) -> f32 {
+    fn add_threshold(&self, price: f32) -> f32 {
         let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
             return price;
         };
@@ -140,11 +140,11 @@ impl Price {
     }
 
     /// The least squared error that something of this price has to spare to stay.
-    fn stake(&self, price: f32) -> f32 {
+    fn keep_threshold(&self, price: f32) -> f32 {
         let Some([error, wanted]) = self.errors.filter(|_| price > 0.0) else {
             return price;
         };
-        // Removing pays if counted(error + worth) − counted(error) ≤ price. Below the quality a stroke may be worth more than its
+        // Removing pays if counted(error + contribution) − counted(error) ≤ price. Below the quality a stroke may be worth more than its
         // price and go: its error counts for less there.
         let without = counted(error, wanted) + f64::from(price);
         uncounted(without, wanted).map_or(0.0, |without| (without - error) as f32)
@@ -154,13 +154,13 @@ impl Price {
         self.per_byte * bytes as f32
     }
 
-    /// The least worth of `stroke` to stay.
-    pub(in crate::fit) fn least_worth(&self, stroke: StrokeRef<'_>) -> f32 {
+    /// The least contribution of `stroke` to stay.
+    pub(in crate::fit) fn least_contribution(&self, stroke: StrokeRef<'_>) -> f32 {
         if self.per_byte == 0.0 {
             return 0.0;
         }
         let factor = self.factor(stroke.is_area());
-        self.stake(factor * self.of_strokes * self.of_bytes(self.bytes_of(stroke)))
+        self.keep_threshold(factor * self.of_strokes * self.of_bytes(self.bytes_of(stroke)))
     }
 
     /// The least gain of `mark` to be added.
@@ -169,7 +169,7 @@ impl Price {
             return 0.0;
         }
         let factor = self.factor(mark.as_area().is_some());
-        self.entry(factor * self.of_strokes * self.of_bytes(mark_bytes(mark, &self.file)))
+        self.add_threshold(factor * self.of_strokes * self.of_bytes(mark_bytes(mark, &self.file)))
     }
 
     /// The least gain of a capsule to be added.
@@ -180,12 +180,12 @@ impl Price {
     /// The least gains of a point of a stroke, or of an area, to be added and to stay.
     pub(in crate::fit) fn of_point(&self, of_area: bool) -> [f32; 2] {
         let price = self.factor(of_area) * self.of_bytes(self.point_bytes());
-        [self.entry(price), self.stake(price)]
+        [self.add_threshold(price), self.keep_threshold(price)]
     }
 
     /// The squared error that may be added to save this many bytes of areas.
     pub(in crate::fit) fn of_saved(&self, bytes: usize) -> f32 {
-        self.stake(self.of_areas * self.of_bytes(bytes))
+        self.keep_threshold(self.of_areas * self.of_bytes(bytes))
     }
 
     fn factor(&self, of_area: bool) -> f32 {
@@ -282,7 +282,7 @@ mod tests {
     fn what_a_drawing_stands_on_stays_however_good_it_is() {
         let strokes = Strokes::from_iter([&STROKE]);
         let price = price(Some(30.0)).at(1e-9, 10_000);
-        let least = price.least_worth(strokes.get(0));
+        let least = price.least_contribution(strokes.get(0));
         assert!(least > 0.0 && least < 10.0, "{least}");
     }
 

@@ -1,6 +1,6 @@
 //! Weights of errors: how much an error counts in each pixel.
 //!
-//! The fit minimises `Σ w·(c − t)²`. It multiplies canvas and target by `√w`, so that all derivatives, worths and gains are
+//! The fit minimises `Σ w·(c − t)²`. It multiplies canvas and target by `√w`, so that all derivatives, contributions and gains are
 //! exactly those of the weighted error; see [`Renderer::set_error_weights`](crate::render::Renderer::set_error_weights).
 
 use std::sync::Arc;
@@ -196,7 +196,7 @@ mod tests {
         Focus::new(&Image::new(64, 48, [plane.clone(), plane.clone(), plane]).unwrap()).unwrap()
     }
 
-    /// Loss, worth and ∂L/∂color of a dot on white, weighted by `focus`.
+    /// Loss, contribution and ∂L/∂color of a dot on white, weighted by `focus`.
     fn judged(focus: Option<&Focus>, x: f32) -> (f64, f32, f32) {
         let target = Canvas::from_image(&checks());
         let dot = Stroke {
@@ -223,11 +223,15 @@ mod tests {
         let objective = Objective::new(Loss::L2, &target).weighted(roots.as_ref());
         let mut gradients = Gradients::default();
         let white = Backdrop::Color([1.0; 3]);
-        renderer.backward_with_worth(&strokes, softness, white, &objective, &mut gradients);
+        renderer.backward_with_contributions(&strokes, softness, white, &objective, &mut gradients);
         let mut canvas = Canvas::flat(target.grid(), [1.0; 3]);
         renderer.forward(&strokes, softness, white, &mut canvas);
         assert!((objective.of(&canvas) - gradients.loss).abs() < 1e-4 * gradients.loss);
-        (gradients.loss, gradients.worth[0], gradients.strokes[3])
+        (
+            gradients.loss,
+            gradients.contribution[0],
+            gradients.strokes[3],
+        )
     }
 
     #[test]
@@ -239,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_count_has_no_worth() {
+    fn what_does_not_count_has_no_contribution() {
         let left = halves(1.0, 0.0);
         let (here, there) = (judged(Some(&left), 16.0), judged(Some(&left), 48.0));
         let anywhere = judged(None, 16.0);

@@ -308,8 +308,14 @@ mod tests {
             let mut of = |objective: &Objective<'_>| {
                 let mut each = [(); 2].map(|()| Gradients::default());
                 renderer.backward(&strokes, edge, black, objective, &mut each[0]);
-                renderer.backward_with_worth(&strokes, edge, black, objective, &mut each[1]);
-                let numbers = each.map(|g| (g.loss, g.backdrop, g.strokes, g.worth));
+                renderer.backward_with_contributions(
+                    &strokes,
+                    edge,
+                    black,
+                    objective,
+                    &mut each[1],
+                );
+                let numbers = each.map(|g| (g.loss, g.backdrop, g.strokes, g.contribution));
                 (numbers, renderer.loss(&strokes, edge, black, objective))
             };
             let expected = of(&Objective::new(Loss::L2, &target.canvas));

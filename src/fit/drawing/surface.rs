@@ -3,7 +3,7 @@
 //! A drawing without alpha has one surface. A transparent drawing is fitted on two at once, a black and a white matte.
 //! A drawing with premultiplied colour P and alpha A looks like P + (1 − A)·g on a matte g. That is linear in every
 //! channel of g, so that a drawing that is right on black and on white is right on every matte. Losses, gradients,
-//! worths and gains are means over the surfaces.
+//! contributions and gains are means over the surfaces.
 
 use crate::error::Result;
 use crate::fit::base::Base;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::terrain::{Cut, Terrain};
+use super::model::{Cut, QuadraticModel};
 use super::{Change, Edit};
 use crate::render::{Knot, Piece, StrokeRef};
 
@@ -49,20 +49,20 @@ impl Changed {
     }
 
     /// The edit that `gain`s this much.
-    fn edit(self, terrain: &Terrain<'_>, gain: f32, price: f32) -> Edit {
-        let growth = self.points.len() as isize - terrain.stroke.points.len() as isize;
+    fn edit(self, model: &QuadraticModel<'_>, gain: f32, price: f32) -> Edit {
+        let growth = self.points.len() as isize - model.stroke.points.len() as isize;
         let change = Change::Path {
-            index: terrain.path,
+            index: model.path,
             points: self.points,
             off: self.off,
         };
         Edit {
-            changes: vec![(terrain.mark, change)],
+            changes: vec![(model.mark, change)],
             gain,
             price,
             growth,
             // An edge of an area may turn its inside out. A point of a stroke need not pay at once.
-            is_tried: terrain.is_ring,
+            is_tried: model.is_ring,
         }
     }
 }
@@ -80,52 +80,52 @@ struct Insertion {
 }
 
 /// The point more that gains most; it has to gain `to_add`.
-pub(in crate::fit) fn add(terrain: &Terrain<'_>, to_add: f32) -> Option<Edit> {
+pub(in crate::fit) fn add(model: &QuadraticModel<'_>, to_add: f32) -> Option<Edit> {
     let within = |(i, &cut): (usize, &Cut)| {
-        let chord = Chord::of(terrain, cut.piece).filter(|chord| chord.length > SHORTEST);
+        let chord = Chord::of(model, cut.piece).filter(|chord| chord.length > SHORTEST);
         let insertions = chord.map(|chord| match cut.piece.control {
-            None => within_line(terrain, cut, chord),
-            Some(control) => [within_curve(terrain, i, control, chord), None],
+            None => within_line(model, cut, chord),
+            Some(control) => [within_curve(model, i, control, chord), None],
         });
         insertions.into_iter().flatten().flatten()
     };
     // A piece is passed over where the chord is too short for one more point.
-    let insertions = terrain.pieces.iter().enumerate().flat_map(within);
+    let insertions = model.pieces.iter().enumerate().flat_map(within);
     let best =
         insertions.reduce(|best, other| if other.gain > best.gain { other } else { best })?;
-    let mut changed = Changed::of(terrain.stroke);
+    let mut changed = Changed::of(model.stroke);
     // The moved point comes first: its index is the one before the insertion.
     if let Some((k, to)) = best.moved {
         changed.points[k] = to;
     }
     changed.points.insert(best.place, best.at);
     changed.off.insert(best.place, best.is_off);
-    Some(changed.edit(terrain, best.gain, -to_add))
+    Some(changed.edit(model, best.gain, -to_add))
 }
 
 /// The point less that costs least; it spares `to_keep`. All others stay where they are.
-pub(in crate::fit) fn remove(terrain: &Terrain<'_>, to_keep: f32) -> Option<Edit> {
-    let count = terrain.stroke.points.len();
+pub(in crate::fit) fn remove(model: &QuadraticModel<'_>, to_keep: f32) -> Option<Edit> {
+    let count = model.stroke.points.len();
     if count < 3 {
         return None;
     }
-    best_change(terrain, 0..count, to_keep, |changed, k| changed.remove(k))
+    best_change(model, 0..count, to_keep, |changed, k| changed.remove(k))
 }
 
 /// The point less that costs least; it spares `to_keep`. An end may move: a curve that turns back beside it ends where it
 /// turned.
-pub(in crate::fit) fn drop(terrain: &Terrain<'_>, to_keep: f32) -> Option<Edit> {
-    let StrokeRef { off, closed, .. } = terrain.stroke;
+pub(in crate::fit) fn drop(model: &QuadraticModel<'_>, to_keep: f32) -> Option<Edit> {
+    let StrokeRef { off, closed, .. } = model.stroke;
     let count = off.len();
     if count < 3 {
         return None;
     }
     // A control point beside an end may have pulled the curve beyond that end. Without it the stroke would be too short, unless
     // the end moves to where the curve was farthest out.
-    let removal = remove(terrain, to_keep);
+    let removal = remove(model, to_keep);
     let retraction = |(k, end): (usize, usize)| {
-        let tip = terrain.tip(end).filter(|_| off[k] && !closed)?;
-        best_change(terrain, k..k + 1, to_keep, |changed, k| {
+        let tip = model.tip(end).filter(|_| off[k] && !closed)?;
+        best_change(model, k..k + 1, to_keep, |changed, k| {
             changed.points[end] = tip;
             changed.remove(k);
         })
@@ -138,19 +138,19 @@ pub(in crate::fit) fn drop(terrain: &Terrain<'_>, to_keep: f32) -> Option<Edit> 
 }
 
 /// The corner that should be smooth, or the control point that should be a corner. The path stays near the point.
-pub(in crate::fit) fn toggle(terrain: &Terrain<'_>, to_change: f32) -> Option<Edit> {
+pub(in crate::fit) fn toggle(model: &QuadraticModel<'_>, to_change: f32) -> Option<Edit> {
     let StrokeRef {
         points,
         off,
         closed,
         ..
-    } = terrain.stroke;
+    } = model.stroke;
     let count = points.len();
     if count < 3 {
         return None;
     }
     let inner = if closed { 0..count } else { 1..count - 1 };
-    best_change(terrain, inner, -to_change, |changed, k| {
+    best_change(model, inner, -to_change, |changed, k| {
         // The curve through the point runs from a to b. Beside a control point it ends halfway; for a corner that becomes smooth,
         // this halfway place is an estimate, as the new control point moves it.
         let neighbours = [(k + count - 1) % count, (k + 1) % count];
@@ -169,24 +169,24 @@ pub(in crate::fit) fn toggle(terrain: &Terrain<'_>, to_change: f32) -> Option<Ed
 
 /// The most gaining `change` of one of the points `of` that leaves a path.
 fn best_change(
-    terrain: &Terrain<'_>,
+    model: &QuadraticModel<'_>,
     of: Range<usize>,
     price: f32,
     change: impl Fn(&mut Changed, usize),
 ) -> Option<Edit> {
     let mut best: Option<(f32, Changed)> = None;
     for k in of {
-        let mut changed = Changed::of(terrain.stroke);
+        let mut changed = Changed::of(model.stroke);
         change(&mut changed, k);
         // An open path has to begin and end with on-points.
-        if changed.is_path(terrain.stroke.closed) {
-            let gain = terrain.gain(changed.on(terrain.stroke), k);
+        if changed.is_path(model.stroke.closed) {
+            let gain = model.gain(changed.on(model.stroke), k);
             if best.as_ref().is_none_or(|(most, _)| gain > *most) {
                 best = Some((gain, changed));
             }
         }
     }
-    best.map(|(gain, changed)| changed.edit(terrain, gain, price))
+    best.map(|(gain, changed)| changed.edit(model, gain, price))
 }
 
 /// The line between the knots of a piece.
@@ -200,8 +200,8 @@ struct Chord {
 }
 
 impl Chord {
-    fn of(terrain: &Terrain<'_>, piece: Piece) -> Option<Self> {
-        let points = terrain.stroke.points;
+    fn of(model: &QuadraticModel<'_>, piece: Piece) -> Option<Self> {
+        let points = model.stroke.points;
         Self::between(piece.from.place(points), piece.to.place(points))
     }
 
@@ -224,7 +224,7 @@ impl Chord {
 
 /// A corner or a control point in the middle of a line. A corner shifts vertices like a tent, a control point like a
 /// parabola.
-fn within_line(terrain: &Terrain<'_>, cut: Cut, chord: Chord) -> [Option<Insertion>; 2] {
+fn within_line(model: &QuadraticModel<'_>, cut: Cut, chord: Chord) -> [Option<Insertion>; 2] {
     let (Knot::Point(from), Knot::Point(to)) = (cut.piece.from, cut.piece.to) else {
         return [None; 2];
     };
@@ -234,14 +234,14 @@ fn within_line(terrain: &Terrain<'_>, cut: Cut, chord: Chord) -> [Option<Inserti
     let tent = (0..=cut.steps).map(|k| 1.0 - (2.0 * at(k) - 1.0).abs());
     let parabola = (0..=cut.steps).map(|k| 2.0 * at(k) * (1.0 - at(k)));
     let most = REACH * chord.length;
-    let corner = terrain.shift(cut.first, tent, chord.across, most);
+    let corner = model.shift(cut.first, tent, chord.across, most);
     // The parabola is at most ½, so that the control point may shift twice as far for the same shift of the curve.
-    let control = terrain.shift(cut.first, parabola, chord.across, 2.0 * most);
+    let control = model.shift(cut.first, parabola, chord.across, 2.0 * most);
     let middle = [0, 1].map(|axis| 0.5 * (chord.a[axis] + chord.b[axis]));
     // The line that closes a path ends at a point before its start.
     let place = if to > from { to } else { from + 1 };
-    let insertion = |(shift, gain): (f32, f32), is_off: bool, worth: f32| Insertion {
-        gain: gain * worth,
+    let insertion = |(shift, gain): (f32, f32), is_off: bool, factor: f32| Insertion {
+        gain: gain * factor,
         place,
         at: chord.moved(middle, shift),
         is_off,
@@ -256,25 +256,25 @@ fn within_line(terrain: &Terrain<'_>, cut: Cut, chord: Chord) -> [Option<Inserti
 /// One more control point of curve number `i`: the curve is cut in two if both its ends are points on the path, and
 /// otherwise the new one lies where it meets the next curve.
 fn within_curve(
-    terrain: &Terrain<'_>,
+    model: &QuadraticModel<'_>,
     i: usize,
     control: usize,
     chord: Chord,
 ) -> Option<Insertion> {
-    let cut = terrain.pieces[i];
+    let cut = model.pieces[i];
     let most = REACH * chord.length;
     match (cut.piece.from, cut.piece.to) {
         // De Casteljau: the curve is the same with a control point halfway to each end, and each of them can move.
         (Knot::Point(_), Knot::Point(_)) => {
             // The curve a, c, b becomes a, (a + c)/2, (c + b)/2, b. The on-point between the halves is implied: it lies halfway.
-            let c = terrain.stroke.points[control];
+            let c = model.stroke.points[control];
             let halves =
                 [chord.a, chord.b].map(|end| [0, 1].map(|axis| 0.5 * (end[axis] + c[axis])));
             let at = |k: usize| k as f32 / cut.steps as f32;
             let first = (0..=cut.steps).map(|k| of_first_half(at(k)));
             let second = (0..=cut.steps).map(|k| of_first_half(1.0 - at(k)));
-            let first = terrain.shift(cut.first, first, chord.across, most);
-            let second = terrain.shift(cut.first, second, chord.across, most);
+            let first = model.shift(cut.first, first, chord.across, most);
+            let second = model.shift(cut.first, second, chord.across, most);
             // Both move at once, and halfway, since each counts the other's share of the slope.
             Some(Insertion {
                 gain: 0.5 * (first.1 + second.1),
@@ -287,9 +287,9 @@ fn within_curve(
         // The new point pulls both curves beside the knot, most at the knot itself.
         (_, Knot::Between(_, next)) => {
             // It changes about the second half of this curve and the first half of the next one.
-            let ahead = terrain.pieces.get(i + 1)?.steps.div_ceil(2);
+            let ahead = model.pieces.get(i + 1)?.steps.div_ceil(2);
             let back = cut.steps.div_ceil(2);
-            let (p, q) = (terrain.stroke.points[control], terrain.stroke.points[next]);
+            let (p, q) = (model.stroke.points[control], model.stroke.points[next]);
             let along = Chord::between(p, q)?;
             let weight = |k: usize| {
                 let away = match k.checked_sub(back) {
@@ -301,7 +301,7 @@ fn within_curve(
             };
             let weights = (0..=back + ahead).map(weight);
             let first = cut.first + cut.steps - back;
-            let (shift, gain) = terrain.shift(first, weights, along.across, most);
+            let (shift, gain) = model.shift(first, weights, along.across, most);
             Some(Insertion {
                 gain,
                 place: control + 1,

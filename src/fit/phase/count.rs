@@ -76,10 +76,10 @@ pub(in crate::fit) fn try_base(session: &mut Session<'_>) -> Result<Outcome> {
     Ok(Outcome::Met)
 }
 
-/// Removes the strokes of least worth until `most` are left.
+/// Removes the strokes of least contribution until `most` are left.
 fn keep_best(drawing: &mut Drawing, most: usize) {
     while drawing.len() > most {
-        // Worth is measured by removing one stroke alone; with its neighbours gone, a stroke is worth more.
+        // A contribution is measured by removing one stroke alone; with its neighbours gone, a stroke is worth more.
         let at_a_time = drawing.len().div_ceil(8);
         let least = edits::least(drawing, at_a_time.min(drawing.len() - most));
         drawing.apply(&least);
@@ -203,21 +203,21 @@ fn next(files: &[(usize, f64)], wanted_db: f64) -> Option<usize> {
     (low <= high && !is_narrow).then(|| wanted.clamp(low, high).max(1))
 }
 
-/// Number of strokes of least worth that could go before the drawing falls below a fidelity of `least_db`.
+/// Number of strokes of least contribution that could go before the drawing falls below a fidelity of `least_db`.
 fn dispensable(drawing: &mut Drawing, least_db: f64) -> usize {
     let values = 3.0 * drawing.pixels() as f64;
     let gradients = drawing.judge();
-    let mut worth = gradients.worth;
-    worth.sort_by(f32::total_cmp);
-    // The squared error at `least_db`, summed over pixels and channels, as worths are.
+    let mut contribution = gradients.contribution;
+    contribution.sort_by(f32::total_cmp);
+    // The squared error at `least_db`, summed over pixels and channels, as contributions are.
     let most = math::powf(10.0, -least_db / 10.0) * values;
     let mut error = gradients.loss * values;
-    let is_spared = |worth: &&f32| {
+    let is_spared = |contribution: &&f32| {
         // Worths are added as if strokes were independent. A stroke that does harm may go, too, but makes no room for others.
-        error += f64::from(worth.max(0.0));
+        error += f64::from(contribution.max(0.0));
         error <= most
     };
-    worth.iter().take_while(is_spared).count()
+    contribution.iter().take_while(is_spared).count()
 }
 
 /// Fidelity gained by doubling the strokes, dB, measured on two drawings with these numbers of strokes and fidelities; the sign of

@@ -214,7 +214,7 @@ pub(in crate::fit) fn stage_polish(session: &mut Session<'_>) -> Result<Outcome>
 /// Removes the free strokes that are not worth their `price`, and returns how many are left.
 fn accept(drawing: &mut Drawing, price: Price) -> usize {
     let price = price.in_drawing(drawing);
-    let losses = drop_marks(drawing, |mark| price.least_worth(mark));
+    let losses = drop_marks(drawing, |mark| price.least_contribution(mark));
     // Not measured by trials: strokes that share pixels are worth little each, and the next stage makes up for them.
     drawing.apply(&choose(losses, Room::default()));
     drawing.free().len()

@@ -75,13 +75,13 @@ fn lost(session: &Session<'_>, drawn: &[Image]) -> Vec<bool> {
 }
 
 /// The picture that was `drawn` where details are lost, and the target elsewhere.
-fn inside(drawn: Image, meant: &Image, lost: &[bool]) -> Canvas {
+fn inside(drawn: Image, restored: &Image, lost: &[bool]) -> Canvas {
     let mut planes = drawn.into_planes();
-    for (plane, meant) in planes.iter_mut().zip(meant.planes()) {
-        let pixels = plane.iter_mut().zip(meant).zip(lost);
+    for (plane, restored) in planes.iter_mut().zip(restored.planes()) {
+        let pixels = plane.iter_mut().zip(restored).zip(lost);
         let others = pixels.filter(|(_, is_lost)| !**is_lost);
-        others.for_each(|((value, meant), _)| *value = *meant);
+        others.for_each(|((value, restored), _)| *value = *restored);
     }
-    let (width, height) = (meant.width(), meant.height());
+    let (width, height) = (restored.width(), restored.height());
     Canvas::from_image(&Image::from_planes(width, height, planes))
 }

@@ -1,8 +1,8 @@
-//! Relocation: strokes of little worth make room for candidates that will gain more.
+//! Relocation: strokes that contribute little make room for candidates that will gain more.
 //!
-//! The strokes of least worth, by exact leave-one-out, and those not worth their price are removed, and candidates are
+//! The strokes of least contribution, by exact leave-one-out, and those not worth their price are removed, and candidates are
 //! added on top instead. Both measures favour the stroke in place: a candidate's closed-form gain does not know what
-//! fitting it will add, and a stroke's worth does not know what its neighbours will make up for. So the gain of a
+//! fitting it will add, and a stroke's contribution does not know what its neighbours will make up for. So the gain of a
 //! candidate is multiplied (`Relocation::gain`).
 
 use crate::fit::edits::{Edit, Room, TOP, choose, drop_marks};
@@ -43,7 +43,7 @@ pub(in crate::fit) fn relocate(
         let scale = drawing.spacing(drawing.len()) * recipe.stages.scale * relocation.scale;
         // Strokes that are not worth their price go.
         let price = price.in_drawing(drawing);
-        let mut edits = drop_marks(drawing, |mark| price.least_worth(mark));
+        let mut edits = drop_marks(drawing, |mark| price.least_contribution(mark));
         // Candidates whose gain pays.
         let count = match config.marks() {
             Marks::Areas => 0,
@@ -55,7 +55,7 @@ pub(in crate::fit) fn relocate(
         edits.extend(paying.map(|c| {
             let stroke = Strokes::from_iter([&c.stroke]).get(0).to_mark();
             Edit {
-                // A candidate isn't fitted yet. The factor makes its gain comparable with the worth of fitted strokes.
+                // A candidate isn't fitted yet. The factor makes its gain comparable with the contribution of fitted strokes.
                 gain: c.gain * relocation.gain,
                 growth: 1,
                 ..Edit::replacing(TOP, vec![stroke], 0.0)

@@ -15,11 +15,11 @@
 //! | `preferences` | the colour that would suit each stroke best |
 //! | `rounds` | the descent between two choices |
 
-mod covers;
 mod forms;
 mod given_widths;
 mod inks;
 mod merge;
+mod occlusion;
 mod palette;
 mod preferences;
 mod proposals;
@@ -100,7 +100,7 @@ fn share_within_bytes(session: &mut Session<'_>) -> Ties {
     // Bytes before sharing: their ratio lets the next polish plan with what sharing saves.
     let before = session.writer.bytes(&session.drawing).max(1);
     loop {
-        let unshared = session.drawing.memento();
+        let unshared = session.drawing.snapshot();
         let ties = shared_widths::run(&mut session.drawing, session.config);
         let excess = count::excess(session);
         if !session.history.corrections.shortened {

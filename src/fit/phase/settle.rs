@@ -8,10 +8,10 @@ mod decimals;
 
 use crate::error::Result;
 use crate::fit::budget;
-use crate::fit::descent::held::Held;
+use crate::fit::descent::constraints::Constraints;
 use crate::fit::descent::{Aim, Course};
 use crate::fit::drawing::objective::Target;
-use crate::fit::drawing::{Drawing, Memento};
+use crate::fit::drawing::{Drawing, Snapshot};
 use crate::fit::file::RenderedFile;
 use crate::fit::order::Outcome;
 use crate::fit::phase::descend::descend;
@@ -63,7 +63,7 @@ fn run(session: &mut Session<'_>) -> Result<RenderedFile> {
     }
     let rates = session.restricted_rates();
     // Rounds may make the file worse, so the best one is kept with the drawing that it was written from.
-    let mut best = (file.clone(), session.drawing.memento());
+    let mut best = (file.clone(), session.drawing.snapshot());
     let (mut round, mut pace) = (0, 1.0);
     while allows_round(session, round) && session.progress.tell(&session.drawing, file.mse()) {
         round += 1;
@@ -76,7 +76,7 @@ fn run(session: &mut Session<'_>) -> Result<RenderedFile> {
         let mut descent = session.descent(course(rates, pace));
         // 2. A few steps towards the corrected target. What strokes share, and their forms, stay.
         descent.ties.clone_from(&session.history.ties);
-        descent.held = Held::of(session.drawing.free(), session.drawing.formed());
+        descent.constraints = Constraints::of(session.drawing.free(), session.drawing.formed());
         descend(session, &mut descent, Some(aim))?;
         if session.progress.is_halted() {
             break;
@@ -85,7 +85,7 @@ fn run(session: &mut Session<'_>) -> Result<RenderedFile> {
         let before = file.mse();
         file = session.render_file()?;
         if file.mse() < best.0.mse() {
-            best = (file.clone(), session.drawing.memento());
+            best = (file.clone(), session.drawing.snapshot());
         }
         if (psnr_db(file.mse()) - psnr_db(before)).abs() < LEAST_DB {
             break;
@@ -93,8 +93,8 @@ fn run(session: &mut Session<'_>) -> Result<RenderedFile> {
         // Each round moves edges less, as the correction holds for edges that stay.
         pace *= NEXT_PACE;
     }
-    let (file, memento): (RenderedFile, Memento) = best;
-    session.drawing.revert(memento);
+    let (file, snapshot): (RenderedFile, Snapshot) = best;
+    session.drawing.revert(snapshot);
     with_fewer_decimals(session, file)
 }
 

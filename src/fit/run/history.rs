@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::base::Base;
 use crate::fit::budget::plan::PlannedStage;
 use crate::fit::descent::ties::Ties;
-use crate::fit::drawing::{Drawing, Memento};
+use crate::fit::drawing::{Drawing, Snapshot};
 use crate::fit::result::{StageRecord, Stop};
 use crate::metrics::psnr_db;
 
@@ -30,7 +30,7 @@ pub(in crate::fit) struct History {
     /// Loss of fidelity because the colours are stacked, dB.
     pub(in crate::fit) stacking_db: Option<f64>,
     /// The drawing that the best file was written from.
-    pub(in crate::fit) best: Option<Memento>,
+    pub(in crate::fit) best: Option<Snapshot>,
 }
 
 /// A stage that was seeded.

@@ -17,7 +17,7 @@ use crate::fit::drawing::bounds::Bounds;
 use crate::fit::drawing::focus::Focus;
 use crate::fit::drawing::masking;
 use crate::fit::drawing::surface::{Prepared, Surface};
-use crate::fit::drawing::{Drawing, Memento, background};
+use crate::fit::drawing::{Drawing, Snapshot, background};
 use crate::fit::file::{RenderedFile, Writer};
 use crate::fit::order::{Phase, Purpose};
 use crate::fit::recipe::{Rates, Recipe};
@@ -83,7 +83,14 @@ struct Keeper<'a> {
 }
 
 /// The state of a fit as a checkpoint holds it.
-type State = (Phase, History, Memento, Position, Duration, Option<Descent>);
+type State = (
+    Phase,
+    History,
+    Snapshot,
+    Position,
+    Duration,
+    Option<Descent>,
+);
 
 impl<'a> Session<'a> {
     pub(in crate::fit) fn new(
@@ -342,7 +349,7 @@ impl<'a> Session<'a> {
 
     /// Makes `file`, rendered from the current drawing, the best file so far.
     pub(in crate::fit) fn set_best(&mut self, file: RenderedFile) {
-        self.history.best = Some(self.drawing.memento());
+        self.history.best = Some(self.drawing.snapshot());
         self.best = Some(file);
     }
 
@@ -407,7 +414,7 @@ impl<'a> Session<'a> {
         (
             self.phase,
             &self.history,
-            self.drawing.memento(),
+            self.drawing.snapshot(),
             self.progress.position,
             self.timer.elapsed(),
             descent,

@@ -51,9 +51,9 @@ fn largest(bytes: &[u8]) -> Result<Largest<'_>, Failure> {
     let entries: Vec<&[u8]> = entries.collect();
     // A byte can't hold 256, so 0 stands for it.
     let side = |byte: u8| if byte == 0 { 256 } else { u32::from(byte) };
-    let worth = |entry: &&&[u8]| (side(entry[0]) * side(entry[1]), le16(entry, 6));
+    let rank = |entry: &&&[u8]| (side(entry[0]) * side(entry[1]), le16(entry, 6));
     // Of equal entries the first.
-    let best = entries.iter().rev().max_by_key(worth);
+    let best = entries.iter().rev().max_by_key(rank);
     let entry = best.ok_or_else(|| damaged(ImageFormat::Ico, "it holds no picture"))?;
     let (length, start) = (le32(entry, 8).unwrap_or(0), le32(entry, 12).unwrap_or(0));
     let whole = bytes.get(start as usize..).unwrap_or_default();

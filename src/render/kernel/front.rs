@@ -48,7 +48,7 @@ impl Transmittance {
         }
         let less_one = load(simd, &self.less_one);
         // The largest transmittance with any one stroke left out: `t` if it is the new one; otherwise that of before,
-        // dimmed by the new one. While this shows anything, worth still depends on the strokes behind.
+        // dimmed by the new one. While this shows anything, a contribution still depends on the strokes behind.
         let less_one = (less_one - less_one * alpha).max(t);
         store(t - weight, &mut self.through);
         store(less_one, &mut self.less_one);

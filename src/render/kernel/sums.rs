@@ -26,7 +26,7 @@ pub(in crate::render) struct OfStroke {
     /// `∂L` of its style.
     pub(in crate::render) style: [f32; STYLE],
     /// The leave-one-out change of the squared error, if it is asked for.
-    pub(in crate::render) worth: f32,
+    pub(in crate::render) contribution: f32,
 }
 
 /// The sums of one segment over one tile.
@@ -57,7 +57,7 @@ impl Sums {
                 // No segment comes near the tile, so the list of segment sums is empty.
                 first: 0,
                 style: [0.0; STYLE],
-                worth: 0.0,
+                contribution: 0.0,
             });
         }
         true
@@ -92,8 +92,8 @@ impl EdgeBlock {
 
 /// Results that are asked for besides derivatives.
 pub(in crate::render) trait Extras: Sync {
-    /// Every stroke's worth.
-    const WORTH: bool;
+    /// Every stroke's contribution.
+    const CONTRIBUTIONS: bool;
     /// Every vertex's stiffness.
     const STIFFNESS: bool;
     /// The derivatives of two losses at once, each of the canvas on its own backdrop.
@@ -110,25 +110,25 @@ pub(in crate::render) struct Stiffnesses;
 pub(in crate::render) struct Mattes;
 
 impl Extras for Nothing {
-    const WORTH: bool = false;
+    const CONTRIBUTIONS: bool = false;
     const STIFFNESS: bool = false;
     const MATTES: bool = false;
 }
 
 impl Extras for Worths {
-    const WORTH: bool = true;
+    const CONTRIBUTIONS: bool = true;
     const STIFFNESS: bool = false;
     const MATTES: bool = false;
 }
 
 impl Extras for Stiffnesses {
-    const WORTH: bool = false;
+    const CONTRIBUTIONS: bool = false;
     const STIFFNESS: bool = true;
     const MATTES: bool = false;
 }
 
 impl Extras for Mattes {
-    const WORTH: bool = false;
+    const CONTRIBUTIONS: bool = false;
     const STIFFNESS: bool = false;
     const MATTES: bool = true;
 }
@@ -179,7 +179,7 @@ pub(super) struct Looks<S: Simd> {
     color: [f32x16<S>; 3],
     opacity: f32x16<S>,
     radius: f32x16<S>,
-    worth: f32x16<S>,
+    contribution: f32x16<S>,
 }
 
 impl<S: Simd> Looks<S> {
@@ -190,7 +190,7 @@ impl<S: Simd> Looks<S> {
             color: [zero; 3],
             opacity: zero,
             radius: zero,
-            worth: zero,
+            contribution: zero,
         }
     }
 
@@ -213,7 +213,7 @@ impl<S: Simd> Looks<S> {
         let zero = f32x16::splat(simd, 0.0);
         // T·m: the share of the pixel's light that comes from this stroke.
         let seen = t * alpha;
-        // `along` becomes g·(c − B), `change` the stroke's part in worth, `contrast2` |c − B|².
+        // `along` becomes g·(c − B), `change` the stroke's part in contribution, `contrast2` |c − B|².
         let (mut along, mut change, mut contrast2) = (zero, zero, zero);
         for channel in 0..3 {
             let back = load(simd, &behind[channel]);
@@ -223,7 +223,7 @@ impl<S: Simd> Looks<S> {
             self.color[channel] += seen * g;
             // The next stroke has this one behind it.
             store(back + alpha * contrast, &mut behind[channel]);
-            if X::WORTH {
+            if X::CONTRIBUTIONS {
                 // This `delta` is −δ of the head, hence the minus before 2e.
                 let delta = seen * contrast;
                 let e = load(simd, &error[channel]);
@@ -233,8 +233,8 @@ impl<S: Simd> Looks<S> {
                 contrast2 += contrast * contrast;
             }
         }
-        if X::WORTH {
-            self.worth += change;
+        if X::CONTRIBUTIONS {
+            self.contribution += change;
         }
         if X::MATTES {
             // The second colour behind is the first one and `through` times the difference between the backdrops.
@@ -289,8 +289,8 @@ impl<S: Simd> Looks<S> {
 
     /// The leave-one-out change of the squared error.
     #[inline(always)]
-    pub(super) fn worth(&self) -> f32 {
-        total(self.worth)
+    pub(super) fn contribution(&self) -> f32 {
+        total(self.contribution)
     }
 }
 

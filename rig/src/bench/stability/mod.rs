@@ -9,7 +9,7 @@
 //! | `agreement` | thin and slanted strokes as resvg draws them |
 //!
 //! `f32` is *within x of `f64`* when no value differs by more than x times the largest value of its kind
-//! (ends, radius, colour, opacity, worth) in the scene. The bound is [`WITHIN`].
+//! (ends, radius, colour, opacity, contribution) in the scene. The bound is [`WITHIN`].
 
 mod agreement;
 mod kinks;
@@ -25,7 +25,7 @@ use strokefit::Result;
 use strokefit::image::Image;
 use strokefit::report::Usage;
 
-/// Gradients and worths in `f32` may differ from `f64` by this share of the largest of their kind.
+/// Gradients and contributions in `f32` may differ from `f64` by this share of the largest of their kind.
 pub const WITHIN: f64 = 1e-3;
 
 /// Extent of a run.

@@ -19,7 +19,7 @@ const EPS: f64 = 1e-6;
 /// Largest difference of two canvases, from culling behind opaque strokes and from `f32`.
 const CANVAS_WITHIN: f64 = 4e-4;
 
-/// Gradients and worths below this count as 0.
+/// Gradients and contributions below this count as 0.
 const FAINT: f64 = 1e-6;
 
 /// Width of the soft edge, px.
@@ -47,7 +47,7 @@ pub(super) struct Specimen {
 pub(super) struct Gap {
     pub(super) canvas: f64,
     pub(super) gradients: f64,
-    pub(super) worth: f64,
+    pub(super) contribution: f64,
 }
 
 impl Gap {
@@ -55,7 +55,7 @@ impl Gap {
         Self {
             canvas: self.canvas.max(other.canvas),
             gradients: self.gradients.max(other.gradients),
-            worth: self.worth.max(other.worth),
+            contribution: self.contribution.max(other.contribution),
         }
     }
 
@@ -64,7 +64,7 @@ impl Gap {
     }
 
     pub(super) fn worth_holds(self) -> bool {
-        self.worth <= WITHIN
+        self.contribution <= WITHIN
     }
 
     pub(super) fn holds(self) -> bool {
@@ -77,11 +77,11 @@ impl std::fmt::Display for Gap {
         let Self {
             canvas,
             gradients,
-            worth,
+            contribution,
         } = self;
         write!(
             f,
-            "f32 from f64: canvas {canvas:.1e}, gradients {gradients:.1e}, worth {worth:.1e}"
+            "f32 from f64: canvas {canvas:.1e}, gradients {gradients:.1e}, contributions {contribution:.1e}"
         )
     }
 }
@@ -120,7 +120,7 @@ impl Specimen {
         let fast: Vec<f64> = gradients.strokes.iter().map(|&v| v.into()).collect();
         let [fast, slow] = [fast, slow].map(|numbers| merged(&self.strokes, numbers));
         let kinds = kinds(&self.strokes);
-        let worth = naive.leave_one_out(&scene, &expected);
+        let contribution = naive.leave_one_out(&scene, &expected);
         Ok(Gap {
             canvas: largest_difference(&canvas, &pixels),
             gradients: (0..KINDS)
@@ -129,14 +129,14 @@ impl Specimen {
                     relative(got, of_kind(&slow, &kinds, kind))
                 })
                 .fold(0.0, f64::max),
-            worth: relative(
-                gradients.worth.iter().copied().map(f64::from),
-                worth.into_iter(),
+            contribution: relative(
+                gradients.contribution.iter().copied().map(f64::from),
+                contribution.into_iter(),
             ),
         })
     }
 
-    /// Canvas, gradients and worths of the fast renderer.
+    /// Canvas, gradients and contributions of the fast renderer.
     fn fast(&self, softness: Softness, target: &Image) -> Result<(Image, Gradients)> {
         let level = Simd::Auto.level().ok_or_else(|| {
             Error::new(
@@ -152,7 +152,7 @@ impl Specimen {
         let target = Canvas::from_image(target);
         let objective = Objective::new(Loss::L2, &target);
         let mut gradients = Gradients::default();
-        renderer.backward_with_worth(
+        renderer.backward_with_contributions(
             &self.strokes,
             softness,
             backdrop,

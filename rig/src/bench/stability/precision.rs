@@ -28,7 +28,7 @@ const LOSS_FACTOR: f64 = 1.25;
 pub(super) fn checks() -> Vec<Check<'static>> {
     let check = |name: String, strokes: &str, iterations: usize, random: Random| {
         let what = format!(
-            "forward, gradients and worth of {STROKES} {strokes} after {iterations} iterations in f32; \
+            "forward, gradients and contributions of {STROKES} {strokes} after {iterations} iterations in f32; \
              the same descent in f64"
         );
         Check::new("precision", name, what, move || after(iterations, random))

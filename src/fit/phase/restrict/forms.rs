@@ -9,10 +9,10 @@ use std::f64::consts::FRAC_PI_4;
 
 use kurbo::ParamCurve;
 
-use super::covers::Covers;
+use super::occlusion::Occlusion;
 use super::proposals::{Each, adopt, traced};
 use crate::error::Result;
-use crate::fit::drawing::{Drawing, Memento};
+use crate::fit::drawing::{Drawing, Snapshot};
 use crate::fit::edits::Edit;
 use crate::fit::run::session::Session;
 use crate::math::Point;
@@ -38,7 +38,7 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     let most = session.limit.min(session.task.most_marks);
     let room = most.saturating_sub(session.drawing.len());
     let shapes = shapes(session, room);
-    let paths = session.drawing.memento();
+    let paths = session.drawing.snapshot();
     // 1. Circles, ellipses and rectangles. Trials judge them in our own render, so the file's render has the last word.
     if adopt(session, shapes, Each::MayLose) {
         refuse_losses(session, paths)?;
@@ -74,13 +74,13 @@ fn fill_bands(drawing: &mut Drawing) {
 
 /// Returns to the drawing of `paths` if the file with shapes is much less faithful: resvg draws large circles of a pen up to a
 /// quarter of a pixel off, and paths of many points better.
-fn refuse_losses(session: &mut Session<'_>, paths: Memento) -> Result<()> {
+fn refuse_losses(session: &mut Session<'_>, paths: Snapshot) -> Result<()> {
     let [most_lost_db, enough_db] = MOST_LOST_DB;
     let shaped_db = psnr_db(session.render_file()?.mse());
     if shaped_db >= enough_db {
         return Ok(());
     }
-    let shaped = session.drawing.memento();
+    let shaped = session.drawing.snapshot();
     session.drawing.restore(paths);
     if psnr_db(session.render_file()?.mse()) - shaped_db <= most_lost_db {
         session.drawing.restore(shaped);
@@ -94,7 +94,7 @@ const DOT_PX: f64 = 0.1;
 /// For each traced mark the shapes that it is, and at most `room` more marks than before.
 fn shapes(session: &Session<'_>, mut room: usize) -> Vec<Edit> {
     let has_areas = session.drawing.free().has_areas();
-    let covers = Covers::of(&session.drawing);
+    let occlusion = Occlusion::of(&session.drawing);
     // An icon in one ink is one path by its artist, too.
     let is_whole = session.drawing.free().len() == 1;
     let has_bands = session.config.marks() == Marks::Auto;
@@ -107,7 +107,7 @@ fn shapes(session: &Session<'_>, mut room: usize) -> Vec<Edit> {
                 stroke.path = like(&stroke.path)?.path();
                 vec![stroke.into()]
             }
-            Mark::Area(area) => parts(area, [is_whole, has_bands], |p| covers.is_seen(i, p))?,
+            Mark::Area(area) => parts(area, [is_whole, has_bands], |p| occlusion.is_seen(i, p))?,
         };
         // A ring of its own is a mark more, and there is a limit on marks.
         *room = room.checked_sub(marks.len() - 1)?;

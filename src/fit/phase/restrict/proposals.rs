@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::fit::descent::held::Held;
+use crate::fit::descent::constraints::Constraints;
 use crate::fit::descent::{Course, Descent, TRACED_PACE};
 use crate::fit::drawing::Drawing;
 use crate::fit::edits::{Change, Edit, apply_priced};
@@ -53,13 +53,13 @@ pub(super) fn adopt(session: &mut Session<'_>, mut edits: Vec<Edit>, each: Each)
     }
     // 1. Make all proposals at once and fit them together, as a fit of all costs as much as a fit of one.
     let home = session.drawing.marks();
-    let worth_before = session.drawing.judge().worth;
+    let contribution_before = session.drawing.judge().contribution;
     let price = session.price.in_drawing(&mut session.drawing);
     session.drawing.apply(&edits);
     let spans = spans(&edits);
     fit(session, &spans);
-    // 2. The marks as fitted, and the worth of each.
-    let worth = session.drawing.judge().worth;
+    // 2. The marks as fitted, and the contribution of each.
+    let contribution = session.drawing.judge().contribution;
     for (edit, span) in edits.iter_mut().zip(spans) {
         let fitted: Vec<Mark> = span
             .clone()
@@ -71,9 +71,9 @@ pub(super) fn adopt(session: &mut Session<'_>, mut edits: Vec<Edit>, each: Each)
         edit.price =
             price.of_saved(bytes.max(0) as usize) - price.of_saved((-bytes).max(0) as usize);
         edit.gain = match each {
-            // All are tried at once: no worth of one tells what several parts, or marks that share pixels, are worth.
+            // All are tried at once: no contribution of one tells what several parts, or marks that share pixels, are worth.
             Each::MayLose => f32::INFINITY,
-            Each::Gains => worth[span].iter().sum::<f32>() - worth_before[i],
+            Each::Gains => contribution[span].iter().sum::<f32>() - contribution_before[i],
         };
         edit.changes = vec![(i, Change::Marks(fitted))];
     }
@@ -137,7 +137,7 @@ fn fit(session: &mut Session<'_>, moving: &[Range<usize>]) {
     let course = Course::new(ITERATIONS, rates);
     let drawing = &mut session.drawing;
     let mut descent = Descent::new(drawing, course, 0.0);
-    descent.held = Held::of(drawing.free(), drawing.formed());
+    descent.constraints = Constraints::of(drawing.free(), drawing.formed());
     let mut moves = vec![false; drawing.free().len()];
     moving
         .iter()

@@ -47,7 +47,7 @@ pub(super) fn best(
     rounds: Rounds,
     mut round: impl FnMut(&mut Session<'_>, usize) -> Result<bool>,
 ) -> Result<f64> {
-    let mut best = (session.drawing.mse(), session.drawing.memento());
+    let mut best = (session.drawing.mse(), session.drawing.snapshot());
     for index in 0..rounds.count {
         if session.progress.stopped().is_some() {
             break;
@@ -55,7 +55,7 @@ pub(super) fn best(
         let counts = round(session, index)?;
         let mse = session.drawing.mse();
         if counts && mse < best.0 {
-            best = (mse, session.drawing.memento());
+            best = (mse, session.drawing.snapshot());
         }
     }
     session.drawing.revert(best.1);

@@ -192,9 +192,9 @@ mod tests {
 
     fn levels(strokes: &[[f32; 9]], keep_colors: bool) -> Vec<u8> {
         let mut strokes: Strokes = strokes.iter().collect();
-        let worth = vec![100.0; strokes.len()];
+        let contribution = vec![100.0; strokes.len()];
         let grid = WidthGrid::of(&[]);
-        let pens = share(&strokes, &worth, keep_colors, grid);
+        let pens = share(&strokes, &contribution, keep_colors, grid);
         draw_with(&pens, &mut strokes);
         strokes.iter().map(|s| quantum(s.color()[0])).collect()
     }

@@ -10,7 +10,7 @@ use crate::scene::{Mark, Rgb, is_inside};
 const FLATNESS: f64 = 0.1;
 
 /// The marks of a drawing as far as they hide others, and its page.
-pub(super) struct Covers {
+pub(super) struct Occlusion {
     marks: Vec<Cover>,
     page: Rect,
 }
@@ -27,7 +27,7 @@ struct Cover {
     is_opaque: bool,
 }
 
-impl Covers {
+impl Occlusion {
     pub(super) fn of(drawing: &Drawing) -> Self {
         let picture = drawing.surface().picture();
         let marks = drawing.free().iter().map(|mark| Cover::of(mark.to_mark()));

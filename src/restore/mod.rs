@@ -46,7 +46,7 @@ const NEAR: f32 = 5.0;
 
 /// The picture that a damaged one is meant to be, and what has happened to it.
 #[derive(Debug, Clone)]
-pub struct Meant {
+pub struct Restored {
     /// The picture without the damage.
     pub picture: Image,
     /// The damage.
@@ -120,10 +120,10 @@ impl fmt::Display for Damage {
 ///
 /// # Errors
 /// None in practice: a restored picture has the size of the given one and finite values.
-pub fn meant(picture: &Image) -> Result<Option<Meant>> {
+pub fn restored(picture: &Image) -> Result<Option<Restored>> {
     let labels = Labels::of(picture, Labels::MOST);
-    if let Some(meant) = labels.map_or(Ok(None), |labels| of_few_colors(picture, &labels))? {
-        return Ok(Some(meant));
+    if let Some(restored) = labels.map_or(Ok(None), |labels| of_few_colors(picture, &labels))? {
+        return Ok(Some(restored));
     }
     let planes = Planes::of(picture);
     let noise = noise::measure(&planes);
@@ -131,7 +131,7 @@ pub fn meant(picture: &Image) -> Result<Option<Meant>> {
 }
 
 /// The picture that one of few colours is meant to be.
-fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Meant>> {
+fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Restored>> {
     if labels.width.max(labels.height) < Labels::LEAST_SIDE {
         return Ok(None);
     }
@@ -145,18 +145,18 @@ fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Meant>> {
             dithering,
             ..Damage::default()
         };
-        return Ok(Some(Meant { picture, damage }));
+        return Ok(Some(Restored { picture, damage }));
     }
     let smoothed = stairs::smoothed(labels)?;
     let damage = Damage {
         stairs: true,
         ..Damage::default()
     };
-    Ok(smoothed.map(|picture| Meant { picture, damage }))
+    Ok(smoothed.map(|picture| Restored { picture, damage }))
 }
 
 /// A picture without noise and, on paper, without shadows and spots; `None` of a photograph, whose texture is as fine as noise.
-fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<Option<Meant>> {
+fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<Option<Restored>> {
     let halved_chroma = chroma::is_halved(&planes);
     shrunk(&mut planes, noise);
     if halved_chroma {
@@ -189,7 +189,7 @@ fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<O
         uneven_light,
         ..Damage::default()
     };
-    Ok(Some(Meant { picture, damage }))
+    Ok(Some(Restored { picture, damage }))
 }
 
 /// True if most pixels have one of a few tones.

@@ -8,7 +8,7 @@ use crate::scene::{Band, Cap, Path, PathPoint, Stroke};
 
 /// The forms among the free strokes of a drawing.
 #[derive(Debug, Clone, Default)]
-pub(in crate::fit) struct Held {
+pub(in crate::fit) struct Constraints {
     /// Strokes and areas that are shapes or bands, by their indices. Of a band, the places of coordinates that lines of its
     /// middle have in common.
     formed: Vec<(usize, Form, Places)>,
@@ -19,19 +19,19 @@ pub(in crate::fit) struct Held {
 /// Groups of places of numbers that are equal.
 type Places = Vec<Vec<usize>>;
 
-impl Held {
+impl Constraints {
     /// The forms that areas have, and the first `formed` strokes. Others are level by chance.
     pub(in crate::fit) fn of(strokes: &Strokes, formed: usize) -> Self {
-        let mut held = Self::forms(strokes);
+        let mut constraints = Self::forms(strokes);
         let found = strokes.iter().enumerate();
         let free = found.filter(|(i, stroke)| *i < formed || stroke.is_area());
         for (i, stroke) in free.filter(|(_, stroke)| stroke.form.is_none()) {
             let start = strokes.range(i).start;
             let paths = stroke.paths();
             let equal = paths.flat_map(|(first, path)| equal(path, start + 2 * first));
-            held.equal.extend(equal);
+            constraints.equal.extend(equal);
         }
-        held
+        constraints
     }
 
     /// The forms alone: a shape stays one of its kind, and a band is none any more once its points have moved each by itself.
@@ -170,10 +170,10 @@ mod tests {
     /// The mark after each of its numbers has moved, and its forms were restored.
     fn moved(mark: &Mark) -> Mark {
         let mut strokes = Strokes::from_iter([mark]);
-        let held = Held::of(&strokes, 1);
+        let constraints = Constraints::of(&strokes, 1);
         let numbers = strokes.numbers_mut().iter_mut().enumerate();
         numbers.for_each(|(i, number)| *number += 0.02 * math::sin(3.0 * i as f32));
-        held.restore(&mut strokes);
+        constraints.restore(&mut strokes);
         strokes.get(0).to_mark()
     }
 

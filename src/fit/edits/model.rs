@@ -16,7 +16,7 @@ use crate::render::{Form, Piece, Pieces, StrokeRef, Strokes, Survey, flattened};
 pub(in crate::fit) const LEAST: usize = 4;
 
 /// One path and the survey of its vertices.
-pub(in crate::fit) struct Terrain<'a> {
+pub(in crate::fit) struct QuadraticModel<'a> {
     /// The index of the stroke or area that it belongs to.
     pub(super) mark: usize,
     /// The index among the mark's paths.
@@ -42,7 +42,7 @@ pub(super) struct Cut {
     pub(super) steps: usize,
 }
 
-impl<'a> Terrain<'a> {
+impl<'a> QuadraticModel<'a> {
     /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. The points of a band
     /// come and go in pairs, so bands have none.
     pub(in crate::fit) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
@@ -53,10 +53,10 @@ impl<'a> Terrain<'a> {
             let is_fit = stroke.is_finite() && stroke.form != Some(Form::Band);
             let paths = stroke.paths().enumerate().filter(move |_| is_fit);
             paths.map(move |(path, (_, points))| {
-                let terrain = Self::new(survey, points, (mark, path, stroke.is_area()), first);
+                let model = Self::new(survey, points, (mark, path, stroke.is_area()), first);
                 // Between rings is a vertex that no segment has.
-                first += terrain.vertices.len() + 1;
-                terrain
+                first += model.vertices.len() + 1;
+                model
             })
         };
         let marks = (0..strokes.len()).into_par_iter();
