@@ -269,6 +269,7 @@ fn walk(
         if at.1 {
             run.reverse();
         }
+        // Two runs share the node between them.
         append(&mut spots, run);
         let leaving = (at.0, !at.1);
         let Some((entering, turn)) = next[leaving.0][usize::from(leaving.1)] else {
@@ -277,6 +278,7 @@ fn walk(
                 closed: false,
             };
         };
+        // A skeleton bends at a crossing although the line that it stands for does not.
         if turn > SMOOTH_TURN {
             smooth_over(&mut spots);
         }

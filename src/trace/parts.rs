@@ -64,6 +64,7 @@ impl Parts {
             if blobs.iter().all(Option::is_none) {
                 continue;
             }
+            // Blobs are numbered over all shapes, in the order of their first pixels.
             let mut names = vec![None; blobs.iter().flatten().fold(0, |most, &k| most.max(k + 1))];
             for (k, blob) in blobs.iter().enumerate().filter(|(k, _)| shape.inside[*k]) {
                 let mut name = |blob: usize| {

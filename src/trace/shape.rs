@@ -141,6 +141,8 @@ struct Envelope {
 impl Envelope {
     /// Replaces each value by the least of `values[k] + (i − k)²`.
     fn transform(&mut self, values: &mut [f32]) {
+        // Felzenszwalb and Huttenlocher: the lower envelope of the parabolas values[k] + (i − k)², in linear time.
+        // First pass: each new parabola hides those on top of the stack that it meets before they begin.
         self.values.clear();
         self.values.extend_from_slice(values);
         self.places.clear();
@@ -160,6 +162,7 @@ impl Envelope {
             self.places.push(i);
             self.starts.push(start);
         }
+        // Second pass: the envelope from left to right.
         let mut k = 0;
         for (i, value) in values.iter_mut().enumerate() {
             while self.starts.get(k + 1).is_some_and(|&s| s < i as f32) {

@@ -85,6 +85,7 @@ fn resampled(places: &[Place], closed: bool) -> Vec<Place> {
     let Some(&last) = all.last().filter(|_| count > 0) else {
         return all.into_iter().take(1).collect();
     };
+    // The step that divides the length evenly. `left` is what remains of it at the start of a segment.
     let step = length / count as f32;
     let mut out = vec![all[0]];
     let mut left = step;

@@ -25,6 +25,7 @@ pub(in crate::fit) fn descend(
     descent: &mut Descent,
     aim: Option<Aim<'_>>,
 ) -> Result<()> {
+    // A stop ends no descent towards an aim, which finishes the drawing and looks at the time itself.
     while aim.is_some() || session.progress.stopped().is_none() {
         if aim.is_none() {
             session.time_a_write()?;
@@ -32,6 +33,7 @@ pub(in crate::fit) fn descend(
         let Some((step, done)) = descent.tick(&mut session.timer) else {
             break;
         };
+        // Marks and points come and go between two iterations, and the optimiser keeps the moments of those that stay.
         rearrange(session, descent, step, done);
         let drawing = &mut session.drawing;
         descent.step(drawing, &session.annealing, (step, done), aim);

@@ -166,6 +166,7 @@ impl<'a> Flat<'a> {
             .covers
             .iter()
             .for_each(|&r| covered[r as usize] = true);
+        // The outline is free below regions that lie on top, except where both are translucent and it would be seen.
         let is_free = |r: u32| {
             let is_above = self.rank(r).is_some_and(|rank| rank > layer.rank);
             let is_seen = self.translucent.has(layer.region) && self.translucent.has(r);
@@ -178,6 +179,7 @@ impl<'a> Flat<'a> {
             field: &field,
             depth: |at, outward| self.depth(at, outward, &free, HIDDEN),
         };
+        // A contour around less than a region may have is noise of the shares.
         let least = 0.6 * colors::LEAST_AREA as f32;
         let contours = field.contours();
         let rings = contours
@@ -215,6 +217,7 @@ impl<'a> Flat<'a> {
             .covers
             .iter()
             .flat_map(|&r| &self.regions.list[r as usize].members);
+        // The box of all covered pixels, with a margin: contours need a border of zeros, and those that leave the page go on for two pixels.
         let mut low = [width, height];
         let mut high = [0, 0];
         for &i in members {

@@ -33,6 +33,7 @@ pub(super) fn ring<D: Fn(Place, Place) -> f32>(
     tolerance: f32,
     around: &Surroundings<'_, D>,
 ) -> Option<Path> {
+    // 1. Samples at even steps, each with the direction out of the shape.
     let mut places = resampled(contour, STEP);
     let count = places.len();
     let outward = |i: usize| {
@@ -41,10 +42,12 @@ pub(super) fn ring<D: Fn(Place, Place) -> f32>(
         [-(b[1] - a[1]) / length, (b[0] - a[0]) / length]
     };
     let outward: Vec<Place> = (0..count).map(outward).collect();
+    // 2. Each moves along it to where half of a pixel would be covered.
     for (place, out) in places.iter_mut().zip(&outward) {
         let shift = around.field.edge(*place, *out);
         *place = [0, 1].map(|k| place[k] + shift * out[k]);
     }
+    // 3. Corners split the outline. Where it is hidden, it may lie anywhere below what hides it.
     let (turns, corners) = corners(&places, STEP);
     let depths = places.iter().zip(&outward);
     let depths: Vec<f32> = depths.map(|(&at, &out)| (around.depth)(at, out)).collect();
@@ -55,6 +58,7 @@ pub(super) fn ring<D: Fn(Place, Place) -> f32>(
         corners,
         tolerance,
     };
+    // 4. Spans between corners. What leaves the page is cut off along its border.
     let is_outside = |p: &Place| (0..2).any(|k| p[k] < 0.0 || p[k] > around.page[k]);
     let outside: Vec<bool> = places.iter().map(is_outside).collect();
     let mut points = match outside.contains(&true) {

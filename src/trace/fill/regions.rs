@@ -40,11 +40,13 @@ impl Regions {
     /// The regions of pixels as mixtures. What is too small, or only edges, becomes part of what is beside it.
     pub(super) fn of(colors: &Colors<'_>, mut mixtures: Vec<Mixture>, parts: &Parts) -> Self {
         let width = colors.pixels.width;
+        // 1. Connected pixels of one label are a region.
         let by_label = |mixtures: &[Mixture]| connected(mixtures.len(), width, |i| mixtures[i].own);
         let (mut of, mut members) = by_label(&mixtures);
         if dissolve(colors, &of, &members, &mut mixtures) {
             (of, members) = by_label(&mixtures);
         }
+        // 2. Small regions join a neighbour. That can leave others small, such as the two halves of a ring, so it repeats.
         for _ in 0..6 {
             let is_small = |pixels: &Vec<u32>| is_small(colors, &mixtures, pixels);
             let small: Vec<bool> = members.iter().map(is_small).collect();
@@ -54,11 +56,13 @@ impl Regions {
             absorb(colors, &of, &members, &small, &mut mixtures);
             (of, members) = by_label(&mixtures);
         }
+        // 3. A shape that came apart into lines and blobs is a region for each.
         let mut parts_of = Vec::new();
         if !parts.are_whole() {
             parts_of = self::parts_of(&of, &members, parts, |i| mixtures[i].own == CANVAS);
             (of, members) = connected(of.len(), width, |i| (of[i], parts_of[i]));
         }
+        // 4. An antialiased pixel belongs to a second region by a share.
         let (second, share) = seconds(colors, &mixtures, &of);
         let region = |pixels: Vec<u32>| {
             let label = mixtures[pixels[0] as usize].own;

@@ -43,11 +43,13 @@ impl Stack {
         drawn: &[bool],
         translucent: &Translucent,
     ) -> Self {
+        // 1. The regions that are shapes: a hole shows what is behind.
         let enclosed = enclosed(regions, neighbours);
         let holes = holes(regions, &enclosed, drawn);
         let shows = |r: u32| drawn[r as usize] && !holes[r as usize] && translucent.is_shape(r);
         let count = regions.list.len() as u32;
         let shapes: Vec<u32> = (0..count).filter(|&r| shows(r)).collect();
+        // 2. Their order, from back to front.
         let overlaps = Overlaps::of(regions, &enclosed, neighbours, translucent, &shapes);
         let order = order(&overlaps, translucent, shapes);
         let places: BTreeMap<u32, usize> =
@@ -55,6 +57,7 @@ impl Stack {
         let ranks: Vec<Option<usize>> = (0..count)
             .map(|r| places.get(&translucent.shape(r)).copied())
             .collect();
+        // 3. A shape goes on beneath all that lies on it, so it covers the regions that it may lie under.
         let ground = Ground {
             regions,
             neighbours,
