@@ -383,7 +383,7 @@ fn is_program(path: &Path) -> bool {
 }
 
 /// True if an engine draws what resvg draws: it leaves no gap, and its render is close to resvg's, or its fidelity, where that
-/// is known, falls short of resvg's by no more than [`MAX_SHORTFALL_DB`].
+/// is known, falls short of resvg's by no more than `MAX_SHORTFALL_DB`.
 pub fn passes(against_resvg: &Agreement, shortfall_db: Option<f64>) -> bool {
     let is_close = against_resvg.psnr_db >= MIN_DB_AGAINST_RESVG;
     let is_as_faithful = shortfall_db.is_some_and(|db| db <= MAX_SHORTFALL_DB);
@@ -391,7 +391,7 @@ pub fn passes(against_resvg: &Agreement, shortfall_db: Option<f64>) -> bool {
 }
 
 /// From left to right: the picture, if there is one; the engine's render; its difference from the
-/// picture and from resvg's render, absolute and amplified by [`DIFFERENCE_GAIN`], black where
+/// picture and from resvg's render, absolute and amplified by `DIFFERENCE_GAIN`, black where
 /// there is none.
 ///
 /// # Errors
