@@ -236,7 +236,7 @@ fn only_colours_of_the_palette_are_used() {
 #[test]
 fn a_palette_is_fitted_and_not_only_applied() {
     let free = drawn("coffee-300", "");
-    let fitted = drawn("coffee-300", "--palette #20080 f0e0d a0301 c08050");
+    let fitted = drawn("coffee-300", "--palette #200804,#f0e0d0,#a03010,#c08050");
     let palette = [[32, 8, 4], [240, 224, 208], [160, 48, 16], [192, 128, 80]]
         .map(|rgb| rgb.map(|c: u8| f32::from(c) / 255.0));
     let nearest = |wanted: [f32; 3]| {
