@@ -161,7 +161,7 @@ impl Renderer {
     }
 
     /// For each mark, by how much the sum of squares of `error` = canvas − target grows when the mark is left out.
-    fn contribution<'py>(
+    fn worth<'py>(
         &self,
         py: Python<'py>,
         marks: &Bound<'py, PackedMarks>,
