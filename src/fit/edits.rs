@@ -469,7 +469,7 @@ mod tests {
     #[test]
     fn what_is_refused_is_found_among_many() {
         let (mut taken, mut trials) = (Vec::new(), 0);
-        by_halves(vec![Vec::new(), (0..64).collect()], TRIALS, |group| {
+        by_halves(vec![Vec::new(), (0..64).collect()], usize::MAX, |group| {
             trials += 1;
             let is_good = !group.contains(&17) && !group.contains(&40);
             if is_good {
