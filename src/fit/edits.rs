@@ -215,8 +215,8 @@ fn places(edit: &Edit) -> impl Iterator<Item = (usize, usize)> {
     })
 }
 
-/// Most trials of edits between two iterations: each renders the drawing. 64: a fifth more time on photographs, 0.00 to +0.01 dB.
-pub(super) const TRIALS: usize = 12;
+/// Most trials of a step. A guess: each renders the drawing.
+pub(super) const TRIALS: usize = 64;
 
 /// Edits that were tried.
 #[derive(Debug, Default)]

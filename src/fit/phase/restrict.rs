@@ -36,7 +36,7 @@ use crate::error::Result;
 use crate::fit::config::Colors;
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
-use crate::fit::edits::{Room, apply_priced, choose, drop_marks};
+use crate::fit::edits::{Room, TRIALS, apply_priced, choose, drop_marks};
 use crate::fit::order::Outcome;
 use crate::fit::run::session::Session;
 use crate::render::StrokeRef;
@@ -75,7 +75,7 @@ const UNSEEN: f32 = 0.5 / 255.0;
 fn remove_hidden(drawing: &mut Drawing) {
     let unseen = |mark: StrokeRef<'_>| 3.0 * pixels(mark) * UNSEEN * UNSEEN;
     let losses = drop_marks(drawing, unseen);
-    let tried = apply_priced(drawing, choose(losses, Room::default()), usize::MAX);
+    let tried = apply_priced(drawing, choose(losses, Room::default()), TRIALS);
     drawing.counters.hidden += tried.made.len();
 }
 

@@ -12,7 +12,7 @@ use super::width_grid::WidthGrid;
 use crate::fit::config::{Colors, Config};
 use crate::fit::descent::ties::Ties;
 use crate::fit::drawing::Drawing;
-use crate::fit::edits::{Change, Edit, apply_priced};
+use crate::fit::edits::{Change, Edit, TRIALS, apply_priced};
 use crate::math;
 use crate::render::{STYLE, StrokeMut, Strokes};
 use crate::scene::quantum;
@@ -52,7 +52,7 @@ pub(super) fn run(drawing: &mut Drawing, config: &Config) -> Ties {
         // Divided equally among the edits; a trial of several compares what they add with the sum of their parts.
         let each = allowance / edits.len() as f32;
         edits.iter_mut().for_each(|edit| edit.price = each);
-        for edit in apply_priced(drawing, edits, usize::MAX).made {
+        for edit in apply_priced(drawing, edits, TRIALS).made {
             for number in numbers.clone() {
                 let places = edit.changes.iter();
                 let places = places.map(|(i, _)| drawing.free().range(*i).end - STYLE + number);
