@@ -92,16 +92,7 @@ impl PackedMarks64 {
 impl PackedMarks {
     /// The marks as parts of a scene.
     pub(crate) fn marks(&self) -> impl Iterator<Item = Mark> {
-        self.0.iter().map(|stroke| match stroke.to_mark() {
-            Mark::Area(mut area) => {
-                area.rings = area.rings.into_iter().map(Path::recognised).collect();
-                Mark::Area(area)
-            }
-            Mark::Stroke(mut stroke) => {
-                stroke.path = stroke.path.recognised();
-                Mark::Stroke(stroke)
-            }
-        })
+        self.0.iter().map(|stroke| stroke.to_mark().recognised())
     }
 
     /// The derivatives `numbers`, which are in the order of [`Strokes::numbers`], by kind.

@@ -42,7 +42,7 @@ def test_a_drawing_becomes_arrays_and_the_same_bytes(options: dict[str, object])
 
 
 def test_a_scene_has_the_strokes_and_areas_of_its_drawing() -> None:
-    drawing = strokefit.fit(house(), strokes=100, preset="draft")
+    drawing = strokefit.fit(house(), strokes=20, preset="draft")
     scene, marks = drawing.scene, drawing.scene.marks
     assert len(drawing.strokes) and len(drawing.areas)
     placed = np.argsort(np.concatenate([drawing.strokes.order, drawing.areas.order]))

@@ -7,6 +7,7 @@
 use super::grid::MIN_WIDTH;
 use super::path::{Path, PathPoint};
 use super::polyline::{CLEAR, Turn, directions, polyline, turns};
+use super::shape::EXACT;
 use super::{Area, Cap, Mark, Stroke};
 use crate::math::{self, Point, Vec2};
 
@@ -261,6 +262,40 @@ impl Mark {
         match self.as_stroke().and_then(Stroke::band) {
             Some(band) => Area::plain(band.rings(), self.color(), self.opacity()).into(),
             None => self,
+        }
+    }
+}
+
+impl Mark {
+    /// This mark as the shapes, or as the stroke with square ends, that its coordinates are exactly those of: arrays of coordinates
+    /// have no more of it. The inverse of [`filled`](Self::filled).
+    #[must_use]
+    pub fn recognised(self) -> Self {
+        let band = |area: &Area| {
+            let points: Vec<PathPoint> =
+                area.rings.iter().flat_map(Path::points).copied().collect();
+            let band = Band::between(&points, &area.rings)?;
+            let is_line = band.is_sound() && !band.is_box(EXACT) && band.slenderness() >= LONG;
+            (is_line && band.deviation(&points)? < EXACT).then_some(band)
+        };
+        match self {
+            Self::Area(area) => match band(&area) {
+                Some(band) => Self::Stroke(Stroke {
+                    path: band.line,
+                    radius: 0.5 * band.width,
+                    cap: Cap::Butt,
+                    color: area.color,
+                    opacity: area.opacity,
+                }),
+                None => Self::Area(Area {
+                    rings: area.rings.into_iter().map(Path::recognised).collect(),
+                    ..area
+                }),
+            },
+            Self::Stroke(stroke) => Self::Stroke(Stroke {
+                path: stroke.path.recognised(),
+                ..stroke
+            }),
         }
     }
 }

@@ -121,7 +121,7 @@ impl Path {
     /// The path as the circle, ellipse or round rectangle that its points are those of, as arrays of coordinates have no more of
     /// it.
     #[must_use]
-    pub fn recognised(self) -> Self {
+    pub(crate) fn recognised(self) -> Self {
         let points: Vec<_> = self.points.iter().map(|p| (p.at, p.is_on)).collect();
         let shape = ShapeKind::shape_of(&points).filter(|_| self.closed);
         shape.map_or(self, Shape::path)

@@ -45,7 +45,7 @@ const QUARTERS: [usize; 4] = [2, 4, 8, 16];
 
 /// Farthest that the points of a shape are from their places, px: more than single precision takes from a page of 8,192 px, and less
 /// than half of what a file's second decimal tells.
-const EXACT: f64 = 1e-3;
+pub(super) const EXACT: f64 = 1e-3;
 
 /// Farthest that a ring bulges from its shape, px.
 const BULGE: f64 = 0.02;
