@@ -235,11 +235,11 @@ pub(super) fn apply_priced(drawing: &mut Drawing, edits: Vec<Edit>, trials: usiz
     let before = drawing.marks();
     let (tried, mut taken): (Vec<usize>, Vec<usize>) =
         (0..edits.len()).partition(|&i| edits[i].is_tried);
-    drawing.apply(taken.iter().map(|&i| &edits[i]));
-    let mut error = match tried.is_empty() {
-        true => 0.0,
-        false => drawing.mse(),
-    };
+    let mut error = 0.0;
+    if !tried.is_empty() {
+        drawing.apply(taken.iter().map(|&i| &edits[i]));
+        error = drawing.mse();
+    }
     let (paying, others): (Vec<usize>, Vec<usize>) =
         tried.into_iter().partition(|&i| edits[i].surplus() >= 0.0);
     let groups = std::iter::once(paying).chain(others.into_iter().map(|i| vec![i]));

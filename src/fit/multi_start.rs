@@ -256,19 +256,13 @@ impl Starts<'_> {
             quality = Some((low + high) / 2.0);
         }
         if let Some(scene) = excessive {
-            let base = Base {
+            let mut task = self.task.clone();
+            task.base = Some(Base {
                 document: None,
                 scene,
                 width: None,
-            };
-            let base = Some(base);
-            let mut shortened = self.trial(
-                &Task {
-                    base,
-                    ..self.task.clone()
-                },
-                None,
-            )?;
+            });
+            let mut shortened = self.trial(&task, None)?;
             shortened.fit.base = None;
             self.offer(shortened);
         }
@@ -382,14 +376,14 @@ impl Costs {
 
     /// True if the drawing may still come to cost less than `bound`.
     fn allow(&self, session: &mut Session<'_>, bound: f64) -> bool {
-        let (mse, bytes) = (session.drawing.mse(), session.bytes());
+        let cost = |session: &mut Session<'_>| self.of(session.drawing.mse(), session.bytes());
         let least = match session.phase {
             // The polish takes most of the error away, so that the bytes decide.
             Phase::Polish(Purpose::Plan) => {
-                self.of(0.0, (BYTES_AFTER_POLISH * bytes as f64) as usize)
+                self.of(0.0, (BYTES_AFTER_POLISH * session.bytes() as f64) as usize)
             }
-            Phase::Recover => self.of(mse, bytes).map(|cost| COST_AFTER_POLISH * cost),
-            Phase::Restrict(_) => self.of(mse, bytes).map(|cost| COST_AT_LAST * cost),
+            Phase::Recover => cost(session).map(|cost| COST_AFTER_POLISH * cost),
+            Phase::Restrict(_) => cost(session).map(|cost| COST_AT_LAST * cost),
             _ => None,
         };
         least.is_none_or(|least| least < bound)

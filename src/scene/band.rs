@@ -264,9 +264,7 @@ impl Mark {
             None => self,
         }
     }
-}
 
-impl Mark {
     /// This mark as the shapes, or as the stroke with square ends, that its coordinates are exactly those of: arrays of coordinates
     /// have no more of it. The inverse of [`filled`](Self::filled).
     #[must_use]

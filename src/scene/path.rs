@@ -122,8 +122,9 @@ impl Path {
     /// it.
     #[must_use]
     pub(crate) fn recognised(self) -> Self {
-        let points: Vec<_> = self.points.iter().map(|p| (p.at, p.is_on)).collect();
-        let shape = ShapeKind::shape_of(&points).filter(|_| self.closed);
+        let points = self.points.iter().map(|p| (p.at, p.is_on));
+        let points = self.closed.then(|| points.collect::<Vec<_>>());
+        let shape = points.and_then(|points| ShapeKind::shape_of(&points));
         shape.map_or(self, Shape::path)
     }
 

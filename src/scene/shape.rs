@@ -207,11 +207,8 @@ impl ShapeKind {
     pub(super) fn shape_of(points: &[(Point, bool)]) -> Option<Shape> {
         let at: Vec<[f32; 2]> = points.iter().map(|(p, _)| math::xy(*p)).collect();
         let exactly = |kind: Self| {
-            let corners = if kind == Self::RoundRect { 8 } else { 0 };
-            let turns = points.len().checked_sub(corners)?;
-            let places = QUARTERS
-                .contains(&(turns / 4))
-                .then(|| kind.places(turns / 4))?;
+            let quarter = points.len().checked_sub(kind.ends())? / 4;
+            let places = QUARTERS.contains(&quarter).then(|| kind.places(quarter))?;
             let shape = kind.nearest(&at).filter(|_| places.len() == at.len())?;
             let is_exact = |((p, is_on), place): (&(Point, bool), &Place)| {
                 let away = shape.frame().at(place) - *p;
@@ -226,8 +223,12 @@ impl ShapeKind {
 
     /// The places of a path of so many points.
     fn places_of(self, count: usize) -> Vec<Place> {
-        let corners = if self == Self::RoundRect { 8 } else { 0 };
-        self.places((count - corners) / 4)
+        self.places((count - self.ends()) / 4)
+    }
+
+    /// Number of points where the sides of a round rectangle end.
+    fn ends(self) -> usize {
+        if self == Self::RoundRect { 8 } else { 0 }
     }
 
     /// The places of all points of a path with this many control points for each quarter turn.
