@@ -11,9 +11,12 @@ use crate::math;
 
 /// 64 random bits for the key `(seed, stage, i, k)`.
 pub fn bits(seed: u64, stage: u64, i: u64, k: u64) -> u64 {
-    [stage, i, k]
-        .into_iter()
-        .fold(mix(seed), |hash, word| mix(hash ^ mix(word)))
+    [stage, i, k].into_iter().fold(mix(seed), with)
+}
+
+/// The hash of words that have the hash `hash`, and of one `word` more.
+pub(crate) fn with(hash: u64, word: u64) -> u64 {
+    mix(hash ^ mix(word))
 }
 
 /// A uniform number in `0.0 .. 1.0` for the key `(seed, stage, i, k)`, a multiple of 2⁻²⁴.

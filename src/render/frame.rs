@@ -103,7 +103,7 @@ impl<'a> Frame<'a> {
             return None;
         };
         // The first call computes them with the usual two passes; the result is the same bits whichever thread comes first.
-        let &(loss, backdrop) = loss.untouched(job.tile)?.get_or_init(|| {
+        let &(loss, backdrop) = loss.kept(job.tile)?.untouched.get_or_init(|| {
             kernel::draw(level, job, scratch);
             let mut none = Sums::default();
             let sums = kernel::differentiate::<L, Nothing>(level, job, loss, scratch, &mut none);

@@ -78,7 +78,7 @@ mod shares;
 mod strokes;
 
 use std::marker::PhantomData;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use fearless_simd::Level;
 use rayon::prelude::*;
@@ -93,6 +93,7 @@ pub use strokes::{
 };
 
 use crate::coverage::Coverage;
+use crate::rng;
 use crate::threads::PerWorker;
 use edge::Reach;
 use frame::Frame;
@@ -123,15 +124,37 @@ pub trait CanvasLoss: Sync {
         None
     }
 
-    /// The place to keep the share of tile `tile` in the loss, and its derivative by the backdrop, where no stroke touches a
-    /// backdrop that is a picture; `None` if the loss outlives that picture.
-    fn untouched(&self, _tile: usize) -> Option<&Untouched> {
+    /// The place to keep the share of tile `tile` in the loss; `None` if the loss outlives the backdrop's picture or
+    /// the softness.
+    fn kept(&self, _tile: usize) -> Option<&KeptLoss> {
         None
     }
 }
 
-/// Share of a tile of a backdrop in the loss, and its derivative, once they are known.
-pub type Untouched = OnceLock<(f64, [f32; 3])>;
+/// The share of a tile in a loss, as long as softness and the picture behind the strokes are the same.
+#[derive(Debug, Default)]
+pub struct KeptLoss {
+    /// The share and its derivative by the backdrop, where no stroke touches it.
+    untouched: OnceLock<(f64, [f32; 3])>,
+    /// The shares with the strokes of the last two lists, the latest first, each with the hash of the list.
+    ///
+    /// Two, because an edit that is refused leaves the list that was there before it.
+    touched: Mutex<[(u64, f64); 2]>,
+}
+
+impl KeptLoss {
+    /// The share with the list of strokes that has this hash, computed by `judge` unless it is kept.
+    fn of(&self, list: u64, judge: impl FnOnce() -> f64) -> f64 {
+        let mut kept = self.touched.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept[0].0 != list {
+            kept.swap(0, 1);
+            if kept[0].0 != list {
+                kept[0] = (list, judge());
+            }
+        }
+        kept[0].1
+    }
+}
 
 /// Colour or picture behind all strokes.
 #[derive(Debug, Clone, Copy)]
@@ -294,9 +317,37 @@ impl Renderer {
             frame: &frame,
             loss,
         };
-        self.run_backward(strokes, 1, &frame, pass);
+        self.bin(strokes, 1, frame.reach);
+        let Self {
+            level,
+            ref polylines,
+            ref mut tiles,
+            ref scratch,
+            ..
+        } = *self;
+        // A tile that the same strokes reach as before has the loss that it had: after an edit, most of a picture.
+        let fingerprints = polylines.fingerprints();
+        // A picture behind the strokes doesn't count: what is kept doesn't outlive it.
+        let page = match backdrop {
+            Backdrop::Color(color) => color.map(|v| u64::from(v.to_bits())),
+            Backdrop::Canvas(_) => [0; 3],
+        };
+        let page = page.into_iter().fold(0, rng::with);
+        let tiles = tiles.par_iter_mut().enumerate().with_max_len(1);
+        let losses = tiles.map(|(tile, work)| {
+            let strokes = work.listed.iter().map(|listed| listed.stroke as usize);
+            let list = strokes.fold(page, |list, i| rng::with(list, fingerprints[i]));
+            let mut judge = || {
+                work.run(level, polylines, tile, &frame, &pass, scratch)
+                    .loss
+            };
+            match loss.kept(tile) {
+                Some(kept) => kept.of(list, judge),
+                None => judge(),
+            }
+        });
         // A sum in tile order: the same `f64` for every number of threads.
-        self.tiles.iter().map(|work| work.total.loss).sum()
+        losses.collect::<Vec<f64>>().iter().sum()
     }
 
     /// The derivatives of the sum of two `losses`, each of the canvas on one of the `backdrops`. Takes little longer than
@@ -382,33 +433,7 @@ impl Renderer {
             .enumerate()
             .with_max_len(1)
             .for_each(|(tile, work)| {
-                work.list_segments(level, polylines, frame.origin(tile), frame.reach);
-                // `job` borrows the rest of `work` during the passes, so the sums move out, with their memory, and back in.
-                let mut sums = std::mem::take(&mut work.sums);
-                sums.clear();
-                // A tile of one colour is known without looking at its pixels: most of a page of line art or areas.
-                if sums.list_layers(&work.listed, polylines) {
-                    if let Some(total) = pass.uniform(tile, polylines, &mut sums.strokes) {
-                        (work.total, work.sums) = (total, sums);
-                        return;
-                    }
-                    // The kernel lists the strokes anew, in the order of its visits.
-                    sums.clear();
-                }
-                // The weights of errors are 0 on the padding, too.
-                let weights = work.error_weights.as_deref().or(work.weights.as_deref());
-                // Both passes run on one tile at once, while what pass 1 keeps is still in the cache.
-                let job = frame.job(polylines, tile, work, weights);
-                let total = scratch.with(|scratch| {
-                    // Without a stroke the tile shows the backdrop, whose sums the loss may keep as long as the picture stays.
-                    let untouched = || pass.untouched(level, &job, scratch);
-                    if let Some(total) = job.listed.is_empty().then(untouched).flatten() {
-                        return total;
-                    }
-                    kernel::draw(level, &job, scratch);
-                    pass.tile(level, &job, scratch, &mut sums)
-                });
-                (work.total, work.sums) = (total, sums);
+                work.total = work.run(level, polylines, tile, frame, &pass, scratch);
             });
     }
 
@@ -503,6 +528,46 @@ impl TileWork {
             listed, segments, ..
         } = self;
         kernel::list_segments(level, polylines, origin, reach, listed, segments);
+    }
+
+    /// Runs `pass` on the tile, with the strokes that are listed for it. The sums of its strokes and segments are in `sums`.
+    fn run(
+        &mut self,
+        level: Level,
+        polylines: &Polylines,
+        tile: usize,
+        frame: &Frame<'_>,
+        pass: &impl BackwardPass,
+        scratch: &PerWorker<Box<Scratch>>,
+    ) -> TileSums {
+        self.list_segments(level, polylines, frame.origin(tile), frame.reach);
+        // `job` borrows the rest of the tile's work during the passes, so the sums move out, with their memory, and back in.
+        let mut sums = std::mem::take(&mut self.sums);
+        sums.clear();
+        // A tile of one colour is known without looking at its pixels: most of a page of line art or areas.
+        if sums.list_layers(&self.listed, polylines) {
+            if let Some(total) = pass.uniform(tile, polylines, &mut sums.strokes) {
+                self.sums = sums;
+                return total;
+            }
+            // The kernel lists the strokes anew, in the order of its visits.
+            sums.clear();
+        }
+        // The weights of errors are 0 on the padding, too.
+        let weights = self.error_weights.as_deref().or(self.weights.as_deref());
+        // Both passes run on one tile at once, while what pass 1 keeps is still in the cache.
+        let job = frame.job(polylines, tile, self, weights);
+        let total = scratch.with(|scratch| {
+            // Without a stroke the tile shows the backdrop, whose sums the loss may keep as long as the picture stays.
+            let untouched = || pass.untouched(level, &job, scratch);
+            if let Some(total) = job.listed.is_empty().then(untouched).flatten() {
+                return total;
+            }
+            kernel::draw(level, &job, scratch);
+            pass.tile(level, &job, scratch, &mut sums)
+        });
+        self.sums = sums;
+        total
     }
 }
 

@@ -51,6 +51,20 @@ pub(super) struct Ramp {
 }
 
 impl Ink {
+    /// The bits of all numbers.
+    pub(super) fn bits(&self) -> impl Iterator<Item = u64> {
+        let axis = match self.axis {
+            InkAxis::Linear { start, slope } => [1.0, start, slope[0], slope[1]],
+            InkAxis::Radial { center, slope } => [2.0, center[0], center[1], slope],
+        };
+        let ramps = self.ramps.iter().flat_map(|ramp| {
+            let [a, b, c, d] = ramp.change;
+            [ramp.from, ramp.per_offset, a, b, c, d]
+        });
+        let numbers = axis.into_iter().chain(self.first).chain(ramps);
+        numbers.map(|v| u64::from(v.to_bits()))
+    }
+
     /// Shortest ramp: two stops at one offset are a step.
     const SHORTEST: f32 = 1e-5;
 

@@ -11,6 +11,7 @@ use super::crossings::Crossings;
 use super::gradients::add;
 use super::paint::Ink;
 use super::strokes::{STYLE, StrokeRef, Strokes, steps};
+use crate::rng;
 
 /// The vertex between the rings of an area: no segment that has it is drawn.
 const BETWEEN_RINGS: [f32; 2] = [f32::NAN; 2];
@@ -137,6 +138,22 @@ impl Polylines {
             }
         }
         self.boxes.push([low, high]);
+    }
+
+    /// For each stroke a hash of all that its picture depends on.
+    pub(super) fn fingerprints(&self) -> Vec<u64> {
+        let of = |i: usize| {
+            let vertices = &self.vertices[self.firsts[i] as usize..self.firsts[i + 1] as usize];
+            let style = self.styles[i].map(|v| u64::from(v.to_bits()));
+            let ink = self.ink(i).into_iter().flat_map(Ink::bits);
+            let places = vertices.iter().map(|v| {
+                let [x, y] = v.map(|v| u64::from(v.to_bits()));
+                x << 32 | y
+            });
+            let words = style.into_iter().chain(ink).chain(places);
+            words.fold(u64::from(self.areas[i]), rng::with)
+        };
+        (0..self.styles.len()).into_par_iter().map(of).collect()
     }
 
     /// The gradient of stroke `i`, if it has one.

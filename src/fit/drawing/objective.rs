@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use crate::loss::Loss;
 use crate::render::{
-    Backdrop, Canvas, CanvasLoss, Gradients, Grid, Lanes, Renderer, Softness, Strokes, TILE,
-    TileRgb, Untouched,
+    Backdrop, Canvas, CanvasLoss, Gradients, Grid, KeptLoss, Lanes, Renderer, Softness, Strokes,
+    TILE, TileRgb,
 };
 
 /// The mean of `loss` over width·height·3 values against `target`.
@@ -14,7 +14,7 @@ pub struct Objective<'a> {
     loss: Loss,
     target: &'a Canvas,
     moments: Option<&'a Moments>,
-    untouched: Option<&'a [Untouched]>,
+    kept: Option<&'a [KeptLoss]>,
     /// The roots of the weights of errors. The target is multiplied by them already.
     error_weights: Option<&'a Canvas>,
     /// 1/(width·height·3).
@@ -26,8 +26,8 @@ pub struct Objective<'a> {
 pub(in crate::fit) struct Target {
     canvas: Canvas,
     moments: Moments,
-    /// For each tile, its part of the error where nothing is drawn on the backdrop.
-    untouched: Vec<Untouched>,
+    /// For each tile, what is known of its part of the error.
+    kept: Vec<KeptLoss>,
 }
 
 impl Target {
@@ -35,14 +35,14 @@ impl Target {
     pub(in crate::fit) fn new(canvas: Canvas, error_weights: Option<&Canvas>) -> Self {
         Self {
             moments: Moments::of(&canvas, error_weights),
-            untouched: vec![Untouched::new(); canvas.tiles().len()],
+            kept: canvas.tiles().iter().map(|_| KeptLoss::default()).collect(),
             canvas,
         }
     }
 
     /// Forgets the errors of the backdrop, which has changed.
     pub(in crate::fit) fn forget_backdrop(&mut self) {
-        self.untouched.fill(Untouched::new());
+        self.kept.fill_with(KeptLoss::default);
     }
 
     /// The grid of tiles.
@@ -109,7 +109,7 @@ impl<'a> Objective<'a> {
             loss,
             target,
             moments: None,
-            untouched: None,
+            kept: None,
             error_weights: None,
             scale: 1.0 / (grid.width * grid.height * 3) as f32,
         }
@@ -132,7 +132,7 @@ impl<'a> Objective<'a> {
     pub(in crate::fit) fn squared(target: &'a Target) -> Self {
         Self {
             moments: Some(&target.moments),
-            untouched: Some(&target.untouched),
+            kept: Some(&target.kept),
             ..Self::new(Loss::L2, &target.canvas)
         }
     }
@@ -223,8 +223,8 @@ impl CanvasLoss for Objective<'_> {
         Some((loss, [0, 1, 2].map(|channel| slope(channel) as f32)))
     }
 
-    fn untouched(&self, tile: usize) -> Option<&Untouched> {
-        self.untouched?.get(tile)
+    fn kept(&self, tile: usize) -> Option<&KeptLoss> {
+        self.kept?.get(tile)
     }
 }
 
