@@ -89,8 +89,7 @@ fn run(folder: &Path, pictures: &[PathBuf], work: &Work) -> Result<()> {
     let runner = Runner::new([CASE])?;
     let measure = |case: &_, svg: &_| runner.case(case, svg);
     let mut say = |line: &str| println!("{line}");
-    let mut tell = |_: rig::lab::Notice<'_>| {};
-    let mut output = ResultFolder::new(folder, &mut tell)?;
+    let mut output = ResultFolder::new(folder, true)?;
     let report = pareto::run(folder, pictures, work, &all_peers(), &measure, &mut say)?;
     pareto::publish(&mut output, folder, pictures, &report)?;
     match report.failures() {

@@ -11,7 +11,7 @@ use crate::bench::peers::{installed, known, missing};
 use crate::bench::quality;
 use crate::bench::scaling;
 use crate::bench::stability::{self, Extent};
-use crate::lab::{Notice, ResultFolder};
+use crate::lab::ResultFolder;
 use anyhow::Result;
 use clap::Subcommand;
 use clap::builder::TypedValueParser;
@@ -112,12 +112,7 @@ pub(super) struct Scaling {
 
 impl Benchmark {
     /// Runs it; how many cases failed.
-    fn run(
-        &self,
-        folder: &Path,
-        files: &mut ResultFolder<'_>,
-        verbosity: Verbosity,
-    ) -> Result<usize> {
+    fn run(&self, folder: &Path, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
         match self {
             Self::Pareto(pareto) => pareto.run(folder, files, verbosity),
             Self::Stability(stability) => stability.run(files),
@@ -155,12 +150,7 @@ impl Pareto {
         Work::Sweep(sweep)
     }
 
-    fn run(
-        &self,
-        folder: &Path,
-        files: &mut ResultFolder<'_>,
-        verbosity: Verbosity,
-    ) -> Result<usize> {
+    fn run(&self, folder: &Path, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
         let runner = Runner::new(CHILD)?;
         let measure = |case: &_, svg: &_| runner.case(case, svg);
         let pictures = &self.pictures;
@@ -175,7 +165,7 @@ impl Pareto {
 }
 
 impl Stability {
-    fn run(&self, files: &mut ResultFolder<'_>) -> Result<usize> {
+    fn run(&self, files: &mut ResultFolder) -> Result<usize> {
         let extent = if self.extents.short {
             Extent::Short
         } else {
@@ -204,7 +194,7 @@ fn say_missing(names: &[&str], verbosity: Verbosity) {
 
 impl Scaling {
     /// Writes how faithful drawings are that may take so long.
-    fn quality(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
+    fn quality(&self, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
         let report = quality::run(&self.quality, &installed(), &mut say)?;
         files.text("quality.csv", &report.table().csv())?;
         files.text("quality.md", &report.table().markdown())?;
@@ -213,7 +203,7 @@ impl Scaling {
         Ok(0)
     }
 
-    fn run(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
+    fn run(&self, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
         if !self.quality.is_empty() {
             return self.quality(files, verbosity);
         }
@@ -248,13 +238,11 @@ pub(super) fn run(benchmark: &Benchmark, verbosity: Verbosity) -> Result<Status>
     | Benchmark::Scaling(Scaling { extents, .. })
     | Benchmark::Compare(Compare { extents, .. })) = benchmark;
     let folder = extents.output.as_path();
-    let mut tell = |event: Notice<'_>| {
-        if let Notice::Wrote(path) = event {
-            verbosity.detail(format_args!("wrote {}", path.display()));
-        }
-    };
-    let mut files = ResultFolder::new(folder, &mut tell)?;
+    let mut files = ResultFolder::new(folder, true)?;
     let failures = benchmark.run(folder, &mut files, verbosity)?;
+    for path in files.finish() {
+        verbosity.detail(format_args!("wrote {}", path.display()));
+    }
     verbosity.say(format_args!("{}: {failures} failed", folder.display()));
     Ok(if failures == 0 {
         Status::Done

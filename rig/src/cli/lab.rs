@@ -1,21 +1,19 @@
 //! `strokefit-rig lab`: the experiments.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::lab::{self, Notice, ResultFolder, article};
-use anyhow::{Result, anyhow};
+use crate::lab::{self, ResultFolder, article};
+use anyhow::Result;
 use clap::Subcommand;
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{Execution, Simd};
 use strokefit::image::Image;
 
-use strokefit::cli::bar::Bar;
 use strokefit::cli::{Status, Verbosity, input};
 
 use super::domain;
 
-/// Repeat the article's experiments, with tables, plots and animations
+/// Repeat the article's experiments, with tables and plots
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   strokefit-rig lab circle -o out
@@ -28,16 +26,12 @@ pub(super) struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Experiment {
-    /// Plot signed distances, coverage functions and their combinations
-    Sdf(Folder),
     /// Plot where the loss pulls a circle, from every start
     Field(Folder),
     /// Move a circle to its target, with each coverage function and optimiser
     Circle(Folder),
     /// Fit sixteen strokes to a star of four
     Star(Folder),
-    /// Composite coloured strokes to a picture, step by step
-    Compose(Folder),
     /// Fit coloured strokes to coloured strokes
     Colors(Folder),
     Article(Article),
@@ -63,12 +57,9 @@ struct Article {
     /// Coverage function: smoothstep, sigmoid, tanh, atan[:K] or raw; A>B changes from A to B during the fit
     #[arg(long, value_name = "EDGE", default_value = "smoothstep")]
     coverage: CoverageSchedule,
-    /// Iterations between two pictures of the progress
+    /// Iterations between two rows of the table
     #[arg(long, value_name = "N", default_value = "30", value_parser = domain::count, allow_negative_numbers = true)]
     every: usize,
-    /// Continue from the article.json of another run
-    #[arg(long, value_name = "FILE")]
-    load: Option<PathBuf>,
 }
 
 /// Compare coverage functions, mixes of two, and the staged fit on pictures
@@ -120,24 +111,20 @@ impl RunArgs {
 impl Experiment {
     fn folder(&self) -> &Path {
         match self {
-            Self::Sdf(folder)
-            | Self::Field(folder)
+            Self::Field(folder)
             | Self::Circle(folder)
             | Self::Star(folder)
-            | Self::Compose(folder)
             | Self::Colors(folder) => &folder.output,
             Self::Article(article) => &article.folder.output,
             Self::Compare(compare) => &compare.folder.output,
         }
     }
 
-    fn run(&self, output: &mut ResultFolder<'_>) -> Result<()> {
+    fn run(&self, output: &mut ResultFolder) -> Result<()> {
         match self {
-            Self::Sdf(_) => lab::sdf::run(output)?,
             Self::Field(_) => lab::field::run(output)?,
-            Self::Circle(_) => lab::circle::run(output)?,
-            Self::Star(_) => lab::star::run(output)?,
-            Self::Compose(_) => lab::compose::run(output)?,
+            Self::Circle(_) => lab::convergence::circle(output)?,
+            Self::Star(_) => lab::convergence::star(output)?,
             Self::Colors(_) => lab::colors::run(output)?,
             Self::Article(article) => article.run(output)?,
             Self::Compare(compare) => compare.run(output)?,
@@ -147,21 +134,20 @@ impl Experiment {
 }
 
 impl Article {
-    fn run(&self, output: &mut ResultFolder<'_>) -> Result<()> {
+    fn run(&self, output: &mut ResultFolder) -> Result<()> {
         let picture = opaque(&self.picture)?;
-        let start = self.load.as_deref().map(load).transpose()?;
         let config = article::ArticleRun {
             coverage: self.coverage,
             every: self.every,
             ..self.recipe.config()
         };
-        article::run(output, &picture, &config, start, self.recipe.execution())?;
+        article::run(output, &picture, &config, self.recipe.execution())?;
         Ok(())
     }
 }
 
 impl Compare {
-    fn run(&self, output: &mut ResultFolder<'_>) -> Result<()> {
+    fn run(&self, output: &mut ResultFolder) -> Result<()> {
         for path in &self.pictures {
             let picture = opaque(path)?;
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -178,28 +164,19 @@ fn opaque(path: &Path) -> Result<Image> {
     Ok(input::picture(path)?.flattened([1.0; 3]))
 }
 
-fn load(path: &Path) -> Result<article::Capsules> {
-    let name = path.display();
-    let json = fs::read_to_string(path)
-        .map_err(|e| anyhow!("{name}: cannot be read ({e}): give an article.json"))?;
-    Ok(article::Capsules::from_json(&json).map_err(|e| e.within(name))?)
-}
-
 pub(super) fn run(args: &Args, verbosity: Verbosity) -> Result<Status> {
-    let mut bar = Bar::new(verbosity.quiet, "");
-    let mut files = 0;
-    let mut tell = |event: Notice<'_>| match event {
-        Notice::Doing { done, what } => bar.show(done, || what.to_owned()),
-        Notice::Wrote(path) => {
-            files += 1;
-            verbosity.detail(format_args!("wrote {}", path.display()));
-        }
-    };
     let folder = args.experiment.folder();
-    let outcome = ResultFolder::new(folder, &mut tell).map_err(Into::into);
-    let outcome = outcome.and_then(|mut output| args.experiment.run(&mut output));
-    bar.clear();
+    let mut output = ResultFolder::new(folder, verbosity.quiet)?;
+    let outcome = args.experiment.run(&mut output);
+    let written = output.finish();
     outcome?;
-    verbosity.say(format_args!("{}: {files} files", folder.display()));
+    for path in &written {
+        verbosity.detail(format_args!("wrote {}", path.display()));
+    }
+    verbosity.say(format_args!(
+        "{}: {} files",
+        folder.display(),
+        written.len()
+    ));
     Ok(Status::Done)
 }

@@ -8,27 +8,27 @@
 //! centres, and ε of the distance is the renderer's, 1e-6 px² (the article's 1e-3 makes a stroke
 //! 0.03 px thinner on its centre line, and no different elsewhere).
 
-mod drawing;
-
 use std::time::Instant;
 
-pub use drawing::{Capsules, Statistics};
+use serde::Serialize;
 
 use super::ResultFolder;
 use crate::report::Table;
-use crate::report::plot::captioned;
-use strokefit::Result;
 use strokefit::coverage::{Coverage, CoverageSchedule};
 use strokefit::fit::{Execution, Objective};
 use strokefit::image::Image;
 use strokefit::loss::Loss;
+use strokefit::math;
 use strokefit::optim::{Adam, AdamParams};
 use strokefit::render::{
-    Backdrop, Canvas, Gradients, Grid, OPACITY, PARAMS, Renderer, Softness, StrokeMut,
+    Backdrop, Canvas, Gradients, Grid, OPACITY, PARAMS, Params, Renderer, Softness, StrokeMut,
+    Strokes,
 };
+use strokefit::rng;
+use strokefit::scene::Scene;
 use strokefit::svg::{self, WriteOptions};
 use strokefit::threads::Workers;
-use strokefit::verify;
+use strokefit::{Error, ErrorKind, Result};
 
 const RATE: f32 = 0.1;
 
@@ -46,12 +46,13 @@ const LARGEST: f32 = 16.0;
 /// Share of the iterations after which a mix of coverage functions passes to the second.
 const EARLY: f64 = 0.7;
 
-const FRAME_MS: u32 = 80;
+/// Standard deviation of `b − a`, px.
+const LENGTH: f32 = 4.0;
 
 /// Number of strokes, steps and random start of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArticleRun {
-    /// Number of capsules, unless some are given.
+    /// Number of capsules.
     pub strokes: usize,
     /// Number of steps.
     pub iterations: usize,
@@ -59,7 +60,7 @@ pub struct ArticleRun {
     pub coverage: CoverageSchedule,
     /// Key of the random start.
     pub seed: u64,
-    /// Iterations between pictures.
+    /// Iterations between rows of the table.
     pub every: usize,
 }
 
@@ -72,6 +73,87 @@ impl Default for ArticleRun {
             coverage: CoverageSchedule::default(),
             seed: 0,
             every: 30,
+        }
+    }
+}
+
+/// Capsules on a background, as the numbers that descent changes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Capsules {
+    /// Width in px.
+    pub width: usize,
+    /// Height in px.
+    pub height: usize,
+    /// The colour behind all strokes.
+    pub background: [f32; 3],
+    /// Back to front, each of two points.
+    pub strokes: Strokes,
+}
+
+/// Capsules as they are saved.
+#[derive(Serialize)]
+struct Saved<'a> {
+    width: usize,
+    height: usize,
+    background: [f32; 3],
+    /// ax, ay, bx, by, radius, red, green, blue, opacity.
+    strokes: &'a [Params],
+}
+
+impl Capsules {
+    /// `strokes` capsules at random on grey, as the article starts; `seed` is the key.
+    pub fn random(width: usize, height: usize, strokes: usize, seed: u64) -> Self {
+        let stroke = |i: u64| {
+            let draw = |k| rng::draw(seed, 0, i, k);
+            let normal = |k| LENGTH * rng::normal(seed, 1, i, k);
+            let (x, y) = (draw(0) * width as f32, draw(1) * height as f32);
+            let radius = 0.1 + 0.1 * draw(2);
+            let [red, green, blue] = [draw(3), draw(4), draw(5)];
+            [
+                x,
+                y,
+                x + normal(0),
+                y + normal(1),
+                radius,
+                red,
+                green,
+                blue,
+                1.0,
+            ]
+        };
+        Self {
+            width,
+            height,
+            background: [0.5; 3],
+            strokes: (0..strokes as u64).map(stroke).collect(),
+        }
+    }
+
+    /// The drawing as JSON; nothing is rounded.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Io`] when a number is not finite, which JSON cannot say.
+    pub fn to_json(&self) -> Result<String> {
+        let saved = Saved {
+            width: self.width,
+            height: self.height,
+            background: self.background,
+            strokes: self.strokes.numbers().as_chunks().0,
+        };
+        serde_json::to_string(&saved).map_err(|e| {
+            let message = format!("the drawing cannot be saved: {e}");
+            Error::new(ErrorKind::Io, message).caused_by(e)
+        })
+    }
+
+    /// The drawing as a scene of one stage.
+    pub fn scene(&self) -> Scene {
+        let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let page = Scene::empty(side(self.width), side(self.height), Some(self.background));
+        let stage = self.strokes.iter().map(|stroke| stroke.to_mark()).collect();
+        Scene {
+            stages: vec![stage],
+            ..page
         }
     }
 }
@@ -186,179 +268,77 @@ impl ArticleRun {
     }
 }
 
-/// Runs the demo on `target`, from `start` or from a random drawing.
+/// Runs the demo on `target` from a random drawing.
 ///
-/// Writes `article.csv` (a row per picture), `article.json` (the drawing, to be read by
-/// [`Capsules::from_json`]), `article.svg` with `article-svg.png` as resvg draws it,
-/// `article-initial.png`, `article-NNNNNN.png` every so many iterations, `article-final.png`, and
-/// the animations `article.gif` and, with legends, `article-legend.gif`.
+/// Writes `article.csv` (a row every so many iterations), `article.json` (the drawing, unrounded) and `article.svg`.
 ///
 /// # Errors
-/// When a file cannot be written, or `start` is of another size than `target`.
+/// When a file cannot be written.
 pub fn run(
-    output: &mut ResultFolder<'_>,
+    output: &mut ResultFolder,
     target: &Image,
     config: &ArticleRun,
-    start: Option<Capsules>,
     execution: Execution,
 ) -> Result<()> {
-    let (width, height) = (target.width(), target.height());
-    let start = match start {
-        Some(drawing) => drawing.fitting(width, height)?,
-        None => Capsules::random(width, height, config.strokes, config.seed),
-    };
+    let start = Capsules::random(target.width(), target.height(), config.strokes, config.seed);
     let mut descent = Reproduction::new(target, start, execution)?;
-    let mut film = Recording::new();
     let begin = Instant::now();
+    let mut table = Table::new(&HEAD);
     for step in 0..config.iterations {
-        let shown = step % config.every.max(1) == 0;
-        // The picture is of the same drawing as the loss, before the step.
         let coverage = config.coverage_at(step);
-        let picture = shown.then(|| (descent.render(coverage), descent.drawing().statistics()));
-        let loss = descent.step(coverage);
-        if let Some((picture, statistics)) = picture {
-            output.doing(
-                step as f64 / config.iterations as f64,
-                &format!("L1 {loss:.5}"),
-            );
-            let name = match step {
-                0 => "article-initial.png".to_owned(),
-                _ => format!("article-{step:06}.png"),
-            };
-            output.picture(&name, &picture)?;
-            let row = Row::new(step, coverage, loss, statistics, begin);
-            film.push(&picture, &row)?;
+        if !step.is_multiple_of(config.every.max(1)) {
+            descent.step(coverage);
+            continue;
         }
+        let drawn = descent.drawing().clone();
+        let loss = descent.step(coverage);
+        let done = step as f64 / config.iterations as f64;
+        output.doing(done, &format!("L1 {loss:.5}"));
+        table.row(row(step, coverage, loss, &drawn, begin));
     }
-    finish(output, film, target, config, &mut descent, begin)
-}
-
-fn finish(
-    output: &mut ResultFolder<'_>,
-    mut film: Recording,
-    target: &Image,
-    config: &ArticleRun,
-    descent: &mut Reproduction,
-    begin: Instant,
-) -> Result<()> {
     let coverage = config.coverage.late;
-    let picture = descent.render(coverage);
-    let loss = strokefit::metrics::l1(target, &picture)?;
-    let statistics = descent.drawing().statistics();
-    film.push(
-        &picture,
-        &Row::new(config.iterations, coverage, loss, statistics, begin),
-    )?;
-    film.finish(output)?;
-    output.picture("article-final.png", &picture)?;
-    output.text("article.json", &descent.drawing().to_json()?)?;
-    let text = svg::write(&descent.drawing().scene(), &WriteOptions::default());
-    output.text("article.svg", &text)?;
-    let drawn = verify::render(&text, verify::Size::Scale(1.0), Some([1.0; 3]))?;
-    output.picture("article-svg.png", &drawn)
+    let loss = strokefit::metrics::l1(target, &descent.render(coverage))?;
+    let drawing = descent.drawing();
+    table.row(row(config.iterations, coverage, loss, drawing, begin));
+    output.text("article.csv", &table.csv())?;
+    output.text("article.json", &drawing.to_json()?)?;
+    let text = svg::write(&drawing.scene(), &WriteOptions::default());
+    output.text("article.svg", &text)
 }
 
-/// Row of the table on one picture.
-struct Row {
+const HEAD: [&str; 8] = [
+    "iteration",
+    "coverage",
+    "l1",
+    "strokes",
+    "at_radius_zero",
+    "mean_radius",
+    "deviation_of_radius",
+    "wall_s",
+];
+
+/// What is known of a drawing.
+fn row(
     iteration: usize,
     coverage: Coverage,
     loss: f64,
-    statistics: Statistics,
-    wall_s: f64,
-}
-
-impl Row {
-    fn new(
-        iteration: usize,
-        coverage: Coverage,
-        loss: f64,
-        statistics: Statistics,
-        begin: Instant,
-    ) -> Self {
-        Self {
-            iteration,
-            coverage,
-            loss,
-            statistics,
-            wall_s: begin.elapsed().as_secs_f64(),
-        }
-    }
-
-    fn legend(&self) -> [String; 2] {
-        let (iteration, coverage, loss) = (self.iteration, &self.coverage, self.loss);
-        let Statistics {
-            strokes,
-            at_zero,
-            mean_radius,
-            deviation,
-        } = self.statistics;
-        [
-            format!("iteration {iteration}, {coverage}, L1 {loss:.5}"),
-            format!("{strokes} radii: {at_zero} zero, mean {mean_radius:.2} ± {deviation:.2} px"),
-        ]
-    }
-
-    fn cells(&self) -> [String; 8] {
-        let radii = &self.statistics;
-        [
-            self.iteration.to_string(),
-            self.coverage.to_string(),
-            self.loss.to_string(),
-            radii.strokes.to_string(),
-            radii.at_zero.to_string(),
-            radii.mean_radius.to_string(),
-            radii.deviation.to_string(),
-            format!("{:.3}", self.wall_s),
-        ]
-    }
-}
-
-/// Least width of a picture with its legend, px: some 46 letters.
-const CAPTION: usize = 380;
-
-/// The pictures so far.
-struct Recording {
-    table: Table,
-    plain: Vec<Image>,
-    legend: Vec<Image>,
-}
-
-impl Recording {
-    fn new() -> Self {
-        let head = [
-            "iteration",
-            "coverage",
-            "l1",
-            "strokes",
-            "at_radius_zero",
-            "mean_radius",
-            "deviation_of_radius",
-            "wall_s",
-        ];
-        Self {
-            table: Table::new(&head),
-            plain: Vec::new(),
-            legend: Vec::new(),
-        }
-    }
-
-    fn push(&mut self, picture: &Image, row: &Row) -> Result<()> {
-        self.table.row(row.cells());
-        self.plain.push(picture.clone());
-        self.legend
-            .push(captioned(picture, &row.legend(), CAPTION)?);
-        Ok(())
-    }
-
-    fn finish(self, output: &mut ResultFolder<'_>) -> Result<()> {
-        for (name, frames) in [
-            ("article.gif", self.plain),
-            ("article-legend.gif", self.legend),
-        ] {
-            output.animation(name, FRAME_MS, frames.into_iter().map(Ok))?;
-        }
-        output.text("article.csv", &self.table.csv())
-    }
+    drawing: &Capsules,
+    begin: Instant,
+) -> [String; 8] {
+    let radii = || drawing.strokes.iter().map(|s| f64::from(s.radius()));
+    let n = drawing.strokes.len().max(1) as f64;
+    let mean = radii().sum::<f64>() / n;
+    let variance = radii().map(|r| math::powi(r - mean, 2)).sum::<f64>() / n;
+    [
+        iteration.to_string(),
+        coverage.to_string(),
+        loss.to_string(),
+        drawing.strokes.len().to_string(),
+        radii().filter(|&r| r == 0.0).count().to_string(),
+        mean.to_string(),
+        variance.sqrt().to_string(),
+        format!("{:.3}", begin.elapsed().as_secs_f64()),
+    ]
 }
 
 #[cfg(test)]
@@ -406,43 +386,38 @@ mod tests {
     }
 
     #[test]
-    fn all_files_are_written_and_the_drawing_can_be_loaded() {
+    fn all_files_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let mut tell = |_: crate::lab::Notice<'_>| {};
-        let mut output = ResultFolder::new(folder.path(), &mut tell).unwrap();
+        let mut output = ResultFolder::new(folder.path(), true).unwrap();
         let config = ArticleRun {
             strokes: 20,
             iterations: 5,
             every: 2,
             ..ArticleRun::default()
         };
-        run(&mut output, &target(), &config, None, Execution::default()).unwrap();
-        let names = [
-            "article.csv",
-            "article.svg",
-            "article.gif",
-            "article-legend.gif",
-            "article-initial.png",
-            "article-000004.png",
-            "article-final.png",
-            "article-svg.png",
-        ];
-        for name in names {
+        run(&mut output, &target(), &config, Execution::default()).unwrap();
+        for name in ["article.svg", "article.json"] {
             assert!(
                 folder.path().join(name).metadata().unwrap().len() > 0,
                 "{name}"
             );
         }
-        let json = std::fs::read_to_string(folder.path().join("article.json")).unwrap();
-        let drawing = Capsules::from_json(&json).unwrap();
-        assert_eq!(drawing.strokes.len(), 20);
-        run(
-            &mut output,
-            &target(),
-            &config,
-            Some(drawing),
-            Execution::default(),
-        )
-        .unwrap();
+        let table = std::fs::read_to_string(folder.path().join("article.csv")).unwrap();
+        assert_eq!(table.lines().count(), 1 + 3 + 1, "{table}");
+    }
+
+    #[test]
+    fn a_random_drawing_is_as_the_article_says() {
+        let drawing = Capsules::random(100, 50, 2000, 3);
+        assert_eq!(drawing, Capsules::random(100, 50, 2000, 3));
+        assert_ne!(drawing, Capsules::random(100, 50, 2000, 4));
+        let squares = drawing
+            .strokes
+            .iter()
+            .map(|stroke| f64::from(math::powi(stroke.points[1][0] - stroke.points[0][0], 2)));
+        let deviation = (squares.sum::<f64>() / 2000.0).sqrt();
+        assert!((deviation - 4.0).abs() < 0.2, "{deviation}");
+        let mut radii = drawing.strokes.iter().map(|stroke| stroke.radius());
+        assert!(radii.all(|radius| (0.1..=0.2).contains(&radius)));
     }
 }

@@ -6,11 +6,9 @@
 
 use rayon::prelude::*;
 
-use super::compose::{GRAY, reference, star};
-use super::descent::{Method, Problem, Trajectory, descend};
-use super::star::START;
-use super::table::{self, STEPS};
-use super::{COVERAGES, ResultFolder, SIZE, show};
+use super::convergence::{STAR, START, STEPS, convergence, push_descent, show};
+use super::descent::{Method, Problem, descend};
+use super::{COVERAGES, ResultFolder, SIZE};
 use crate::report::picture;
 use crate::report::plot::Panel;
 use strokefit::Result;
@@ -20,7 +18,7 @@ use strokefit::render::OPACITY;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
 use strokefit::rng;
 
-const METHODS: [Method; 2] = [Method::adam(0.5), Method::rmsprop(0.1)];
+const METHODS: [Method; 2] = [Method::Adam(0.5), Method::RmsProp(0.1)];
 
 /// Ends, radius and colour; no opacity.
 const PARAMS: usize = OPACITY;
@@ -34,6 +32,24 @@ const COLOR_RATE: f64 = 0.1;
 /// Key of the random colours.
 const SEED: u64 = 1;
 
+/// The star's colours, and that behind.
+const COLORS: [Rgb; 4] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 0.0],
+];
+const GRAY: Rgb = [0.5; 3];
+
+/// Pixels at integer coordinates.
+fn reference(coverage: Coverage) -> Reference {
+    Reference {
+        eps: 1e-4,
+        sample_offset: 0.0,
+        ..Reference::new(coverage, 1.0)
+    }
+}
+
 /// The mean squared error of opaque strokes on grey against a picture.
 struct Coloring {
     reference: Reference,
@@ -44,7 +60,7 @@ impl Coloring {
     fn new(coverage: Coverage) -> Self {
         Self {
             reference: reference(coverage),
-            target: reference(Coverage::Raw).render(&star(1.0)),
+            target: reference(Coverage::Raw).render(&scene(&star())),
         }
     }
 }
@@ -88,6 +104,13 @@ fn scene(params: &[f64]) -> Scene {
     }
 }
 
+/// The star in its colours.
+fn star() -> Vec<f64> {
+    let rows = STAR.into_iter().zip(COLORS);
+    rows.flat_map(|(shape, color)| shape.into_iter().chain(color))
+        .collect()
+}
+
 fn start() -> Vec<f64> {
     let color = |i, k| f64::from(rng::draw(SEED, 0, i, k));
     let rows = (0..).zip(START);
@@ -95,44 +118,35 @@ fn start() -> Vec<f64> {
     rows.flat_map(row).collect()
 }
 
-/// Writes `colors.csv`, and per optimiser a chart of the losses, a sheet of the drawings and an
-/// animation.
+/// Writes `colors.csv`, and per optimiser a chart of the losses and a sheet of the drawings.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
-    let mut table = table::convergence();
+pub fn run(output: &mut ResultFolder) -> Result<()> {
+    let mut table = convergence();
     for (i, method) in METHODS.into_iter().enumerate() {
         let name = format!("colors-{method}");
         output.doing(i as f64 / METHODS.len() as f64, &name);
         let descent = |&c: &Coverage| descend(&Coloring::new(c), &start(), method, STEPS);
         let descents: Vec<_> = COVERAGES.par_iter().map(descent).collect();
         for (coverage, descent) in COVERAGES.iter().zip(&descents) {
-            let labels = [
-                "colors",
-                "",
-                &coverage.to_string(),
-                &method.to_string(),
-                "random",
-            ];
-            table::push_descent(&mut table, &labels.map(str::to_owned), descent);
+            let (coverage, method) = (coverage.to_string(), method.to_string());
+            let labels = ["colors", "", &coverage, &method, "random"];
+            push_descent(&mut table, &labels.map(str::to_owned), descent);
         }
         let descents: Vec<_> = COVERAGES.into_iter().zip(descents).collect();
-        let draw = |coverage, descent: &Trajectory<f64>, step| {
-            panel(coverage, &scene(descent.params_at(step)))
-        };
-        let target = panel(Coverage::Raw, &star(1.0))?;
-        show(output, &name, &descents, Some(&target), true, draw)?;
+        let target = Some(panel(Coverage::Raw, &star())?);
+        show(output, &name, &descents, target, |coverage, descent| {
+            panel(coverage, descent.last())
+        })?;
     }
     output.text("colors.csv", &table.csv())
 }
 
-fn panel(coverage: Coverage, scene: &Scene) -> Result<Panel> {
-    let canvas = reference(coverage).render(scene);
-    Ok(Panel::new(
-        "target",
-        picture::map(SIZE, &canvas, |rgb| rgb)?,
-    ))
+fn panel(coverage: Coverage, params: &[f64]) -> Result<Panel> {
+    let canvas = reference(coverage).render(&scene(params));
+    let image = picture::map(SIZE, &canvas, |rgb| rgb)?;
+    Ok(Panel::new("target", image))
 }
 
 #[cfg(test)]

@@ -1,19 +1,17 @@
 //! Compares coverage functions on real pictures, in the soft render and in the file.
 //!
-//! The article's recipe ([`article`]) with each coverage function and with mixes, and
-//! the staged pipeline with as many strokes, without and with polish, and in as much time as the
-//! article's recipe took with smoothstep. The table has the fidelity of the soft render, which the article
-//! reports, beside that of the SVG as resvg draws it, which the user gets.
+//! The article's recipe ([`article`]) with each coverage function and with mixes, and the staged pipeline with as many strokes,
+//! without and with polish. The table has the fidelity of the soft render, which the article reports, beside that of the SVG as
+//! resvg draws it, which the user gets.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::ResultFolder;
 use super::article::{self, Capsules, Reproduction};
 use crate::report::Table;
-use crate::report::plot::{Panel, Sheet};
 use strokefit::Result;
 use strokefit::coverage::{Coverage, CoverageSchedule};
-use strokefit::fit::{Budget, Config, Execution, Fitter, Preset};
+use strokefit::fit::{Budget, Config, Execution, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::scene::Scene;
@@ -54,16 +52,14 @@ struct Row {
     soft: Quality,
     svg: Quality,
     svg_bytes: usize,
-    drawn: Image,
 }
 
-/// Compares on one picture; `name` heads the files: `NAME.csv` and `NAME.md`, worst first, and
-/// `NAME.png` with the SVGs as resvg draws them.
+/// Compares on one picture; `name` heads the files: `NAME.csv` and `NAME.md`, worst first.
 ///
 /// # Errors
 /// When a file cannot be written or `execution` asks for what this machine does not have.
 pub fn run(
-    output: &mut ResultFolder<'_>,
+    output: &mut ResultFolder,
     name: &str,
     target: &Image,
     config: &article::ArticleRun,
@@ -81,13 +77,18 @@ pub fn run(
         };
         rows.push(at_once(&target, &config, execution)?);
     }
-    let time = rows.first().map_or(0.0, |row| row.wall_s);
     output.doing(0.95, &format!("{name}: the staged pipeline"));
-    rows.extend(staged(&target, config, time, execution)?);
+    for (recipe, polish) in [("staged, no polish", false), ("staged, polished", true)] {
+        rows.push(staged(recipe, polish, &target, config, execution)?);
+    }
     rows.sort_by(|x, y| y.soft.l1.total_cmp(&x.soft.l1));
     output.text(&format!("{name}.csv"), &table(&rows).csv())?;
-    output.text(&format!("{name}.md"), &markdown(name, config, &rows))?;
-    output.picture(&format!("{name}.png"), &sheet(name, target, rows)?)
+    let title = format!(
+        "# {name}: {} strokes, {} iterations, worst soft render first",
+        config.strokes, config.iterations
+    );
+    let text = format!("{title}\n\n{}", table(&rows).markdown());
+    output.text(&format!("{name}.md"), &text)
 }
 
 /// The article's recipe.
@@ -105,42 +106,27 @@ fn at_once(target: &Image, config: &article::ArticleRun, execution: Execution) -
     Row::new(recipe, target, &soft, &scene, wall_s)
 }
 
-/// The staged pipeline with as many strokes, and in as much time.
+/// The staged pipeline with as many strokes.
 fn staged(
+    recipe: &str,
+    polish: bool,
     target: &Image,
     config: &article::ArticleRun,
-    time_s: f64,
     execution: Execution,
-) -> Result<Vec<Row>> {
-    let budget = Budget {
-        strokes: Some(config.strokes),
-        ..Budget::default()
+) -> Result<Row> {
+    let begin = Instant::now();
+    let config = Config {
+        budget: Budget {
+            strokes: Some(config.strokes),
+            ..Budget::default()
+        },
+        polish,
+        seed: config.seed,
+        ..Config::default()
     };
-    let timed = Budget {
-        time: Duration::try_from_secs_f64(time_s)
-            .ok()
-            .filter(|time| !time.is_zero()),
-        ..budget
-    };
-    let recipes = [
-        ("staged, no polish", budget, Preset::Balanced, false),
-        ("staged", budget, Preset::Balanced, true),
-        ("staged, equal time", timed, Preset::Best, true),
-    ];
-    let row = |(recipe, budget, preset, polish): (&str, _, _, _)| {
-        let begin = Instant::now();
-        let config = Config {
-            budget,
-            preset,
-            polish,
-            seed: config.seed,
-            ..Config::default()
-        };
-        let fit = Fitter::new(config).execution(execution).fit(target)?;
-        let wall_s = begin.elapsed().as_secs_f64();
-        Row::new(recipe.into(), target, &fit.soft, &fit.scene, wall_s)
-    };
-    recipes.into_iter().map(row).collect()
+    let fit = Fitter::new(config).execution(execution).fit(target)?;
+    let wall_s = begin.elapsed().as_secs_f64();
+    Row::new(recipe.into(), target, &fit.soft, &fit.scene, wall_s)
 }
 
 impl Row {
@@ -160,7 +146,6 @@ impl Row {
             soft: Quality::between(target, soft)?,
             svg: Quality::between(target, &drawn)?,
             svg_bytes: text.len(),
-            drawn,
         })
     }
 
@@ -197,33 +182,6 @@ fn table(rows: &[Row]) -> Table {
     table
 }
 
-fn markdown(name: &str, config: &article::ArticleRun, rows: &[Row]) -> String {
-    format!(
-        "# {name}: {} strokes, {} iterations, worst soft render first\n\n{}",
-        config.strokes,
-        config.iterations,
-        table(rows).markdown()
-    )
-}
-
-fn sheet(name: &str, target: Image, rows: Vec<Row>) -> Result<Image> {
-    let zoom = (300 / target.width().max(1)).max(1);
-    let mut panels = vec![Panel::new("target", target)];
-    panels.extend(rows.into_iter().map(|row| {
-        Panel::new(
-            format!("{} {:.2} dB", row.recipe, row.svg.psnr_db),
-            row.drawn,
-        )
-    }));
-    let sheet = Sheet {
-        title: format!("{name}: resvg's renders of the SVGs"),
-        columns: 4,
-        zoom,
-        panels,
-    };
-    sheet.draw()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -231,8 +189,7 @@ mod tests {
     #[test]
     fn every_recipe_has_its_row() {
         let folder = tempfile::tempdir().unwrap();
-        let mut tell = |_: crate::lab::Notice<'_>| {};
-        let mut output = ResultFolder::new(folder.path(), &mut tell).unwrap();
+        let mut output = ResultFolder::new(folder.path(), true).unwrap();
         let ramp: Vec<f32> = (0..32 * 32).map(|i| (i % 32) as f32 / 31.0).collect();
         let target = Image::new(32, 32, [ramp.clone(), ramp.clone(), ramp]).unwrap();
         let config = article::ArticleRun {
@@ -242,8 +199,7 @@ mod tests {
         };
         run(&mut output, "ramp", &target, &config, Execution::default()).unwrap();
         let csv = std::fs::read_to_string(folder.path().join("ramp.csv")).unwrap();
-        assert_eq!(csv.lines().count(), 1 + schedules().len() + 3);
+        assert_eq!(csv.lines().count(), 1 + schedules().len() + 2);
         assert!(csv.contains("\"at once, sigmoid>smoothstep\""), "{csv}");
-        assert!(folder.path().join("ramp.png").exists());
     }
 }

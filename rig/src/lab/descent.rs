@@ -1,8 +1,24 @@
 //! Small problems and their descent: a loss of a few numbers, an optimiser, some hundred steps.
+//!
+//! The article compares [`Adam`] with AdamW and RMSprop, by `PyTorch`'s formulas:
+//!
+//! ```text
+//! AdamW      x ← x − rate·λ·x, then a step of Adam
+//!
+//! RMSprop    v ← αv + (1−α)g²
+//!            b ← μb + g / (√v + ε)
+//!            x ← x − rate·b
+//! ```
+//!
+//! AdamW's decay pulls every value towards 0: for positions a corner of the picture, for radii an invisible stroke. RMSprop's
+//! average starts from 0 without a correction, so its first step is `1/√(1−α)` times as long as later ones.
+//!
+//! Sources: Loshchilov & Hutter, "Decoupled weight decay regularization", ICLR 2019, algorithm 2, with the decay multiplied by the
+//! learning rate, as in `torch.optim.AdamW`. Tieleman & Hinton, "Lecture 6.5: RMSProp", COURSERA: Neural Networks for Machine
+//! Learning, 2012, with ε outside the root and the momentum buffer as in `torch.optim.RMSprop`.
 
 use std::fmt;
 
-use super::optimizers::{AdamW, AdamWParams, Optimizer, RmsProp, RmsPropParams};
 use strokefit::math::Real;
 use strokefit::optim::{Adam, AdamParams};
 
@@ -20,84 +36,91 @@ pub trait Problem<T: Real> {
     }
 }
 
-/// An optimiser with its settings.
+/// An optimiser and its learning rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Method {
-    /// Learning rate.
-    pub rate: f64,
-    /// Which optimiser.
-    pub kind: MethodKind,
+pub enum Method {
+    /// Adam.
+    Adam(f64),
+    /// AdamW with a decay of [`DECAY`].
+    AdamW(f64),
+    /// RMSprop.
+    RmsProp(f64),
 }
 
-/// Which optimiser.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum MethodKind {
-    /// [`Adam`].
-    Adam(AdamParams),
-    /// [`AdamW`].
-    AdamW(AdamWParams),
-    /// [`RmsProp`].
-    RmsProp(RmsPropParams),
-}
-
-/// Parameters that the article gives Adam and AdamW in the small experiments.
+/// The article's parameters of Adam and AdamW in the small experiments.
 const ADAM: AdamParams = AdamParams {
     betas: [0.95, 0.999],
     eps: 1e-8,
 };
 
-impl Method {
-    /// Adam with the betas 0.95 and 0.999.
-    pub const fn adam(rate: f64) -> Self {
-        Self {
-            rate,
-            kind: MethodKind::Adam(ADAM),
-        }
-    }
+/// λ, the fraction by which AdamW shrinks a value per step at a learning rate of 1.
+const DECAY: f64 = 0.01;
 
-    /// AdamW with the betas 0.95 and 0.999 and a decay of 0.01.
-    pub const fn adamw(rate: f64) -> Self {
-        let params = AdamWParams {
-            adam: ADAM,
-            decay: 0.01,
-        };
-        Self {
-            rate,
-            kind: MethodKind::AdamW(params),
-        }
-    }
-
-    /// RMSprop with α = 0.99 and a momentum of ½.
-    pub const fn rmsprop(rate: f64) -> Self {
-        let params = RmsPropParams {
-            alpha: 0.99,
-            momentum: 0.5,
-            eps: 1e-8,
-        };
-        Self {
-            rate,
-            kind: MethodKind::RmsProp(params),
-        }
-    }
-
-    /// The optimiser, for `len` numbers.
-    pub fn optimizer<T: Real>(&self, len: usize) -> Box<dyn Optimizer<T>> {
-        match self.kind {
-            MethodKind::Adam(params) => Box::new(Adam::new(len, params)),
-            MethodKind::AdamW(params) => Box::new(AdamW::new(len, params)),
-            MethodKind::RmsProp(params) => Box::new(RmsProp::new(len, params)),
-        }
-    }
-}
+/// RMSprop's α, decay of the mean squared gradient; μ, the share of the step before that is repeated; and ε.
+const ALPHA: f64 = 0.99;
+const MOMENTUM: f64 = 0.5;
+const EPS: f64 = 1e-8;
 
 /// `adam`, `adamw` or `rmsprop`.
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self.kind {
-            MethodKind::Adam(_) => "adam",
-            MethodKind::AdamW(_) => "adamw",
-            MethodKind::RmsProp(_) => "rmsprop",
+        f.write_str(match self {
+            Self::Adam(_) => "adam",
+            Self::AdamW(_) => "adamw",
+            Self::RmsProp(_) => "rmsprop",
         })
+    }
+}
+
+/// An optimiser under way.
+struct Optimizer<T> {
+    method: Method,
+    scales: Vec<T>,
+    adam: Adam<T>,
+    /// RMSprop's mean squared gradients, and its last steps.
+    square: Vec<T>,
+    buffer: Vec<T>,
+}
+
+impl<T: Real> Optimizer<T> {
+    fn new(method: Method, scales: Vec<T>) -> Self {
+        let len = scales.len();
+        Self {
+            method,
+            scales,
+            adam: Adam::new(len, ADAM),
+            square: vec![T::zero(); len],
+            buffer: vec![T::zero(); len],
+        }
+    }
+
+    fn step(&mut self, params: &mut [T], gradient: &[T]) {
+        match self.method {
+            Method::Adam(rate) => self.step_of_adam(params, gradient, T::of(rate)),
+            Method::AdamW(rate) => {
+                let rate = T::of(rate);
+                for (value, &scale) in params.iter_mut().zip(&self.scales) {
+                    *value *= T::one() - rate * scale * T::of(DECAY);
+                }
+                self.step_of_adam(params, gradient, rate);
+            }
+            Method::RmsProp(rate) => self.step_of_rmsprop(params, gradient, T::of(rate)),
+        }
+    }
+
+    fn step_of_adam(&mut self, params: &mut [T], gradient: &[T], rate: T) {
+        self.adam.step_scaled(params, gradient, rate, &self.scales);
+    }
+
+    fn step_of_rmsprop(&mut self, params: &mut [T], gradient: &[T], rate: T) {
+        let (keep, take) = (T::of(ALPHA), T::of(1.0 - ALPHA));
+        let values = params.iter_mut().zip(gradient).zip(&self.scales);
+        let state = self.square.iter_mut().zip(&mut self.buffer);
+        for (((value, &g), &scale), (square, buffer)) in values.zip(state) {
+            *square = keep * *square + take * g * g;
+            *buffer = T::of(MOMENTUM) * *buffer + g / (square.sqrt() + T::of(EPS));
+            *value -= rate * scale * *buffer;
+        }
     }
 }
 
@@ -122,15 +145,9 @@ impl<T> Trajectory<T> {
         self.losses.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// The numbers after `step` steps, or after the last one.
-    pub fn params_at(&self, step: usize) -> &[T] {
-        let last = self.params.len().saturating_sub(1);
-        self.params.get(step.min(last)).map_or(&[], Vec::as_slice)
-    }
-
     /// The numbers after all steps.
     pub fn last(&self) -> &[T] {
-        self.params_at(usize::MAX)
+        self.params.last().map_or(&[], Vec::as_slice)
     }
 }
 
@@ -143,20 +160,18 @@ pub fn descend<T: Real>(
 ) -> Trajectory<T> {
     let mut params = start.to_vec();
     let mut gradient = vec![T::zero(); start.len()];
-    let mut optimizer = method.optimizer(start.len());
-    let scales = problem.scales(start.len());
+    let mut optimizer = Optimizer::new(method, problem.scales(start.len()));
     let mut descent = Trajectory {
         losses: Vec::with_capacity(steps + 1),
         params: Vec::with_capacity(steps + 1),
     };
     for step in 0..=steps {
         problem.clamp(&mut params);
-        descent
-            .losses
-            .push(problem.evaluate(&params, &mut gradient));
+        let loss = problem.evaluate(&params, &mut gradient);
+        descent.losses.push(loss);
         descent.params.push(params.clone());
         if step < steps {
-            optimizer.step_scaled(&mut params, &gradient, T::of(method.rate), &scales);
+            optimizer.step(&mut params, &gradient);
         }
     }
     descent
@@ -182,15 +197,20 @@ mod tests {
 
     #[test]
     fn a_descent_goes_down_and_stays_in_its_domain() {
-        for method in [Method::adam(0.1), Method::adamw(0.1), Method::rmsprop(0.1)] {
+        for method in [Method::Adam(0.1), Method::AdamW(0.1), Method::RmsProp(0.1)] {
             let descent = descend(&Square, &[5.0], method, 100);
             assert_eq!((descent.losses.len(), descent.params.len()), (101, 101));
             assert_eq!(descent.loss_at(0), 25.0);
-            assert_eq!(
-                (descent.last(), descent.least()),
-                (&[1.0][..], 1.0),
-                "{method}"
-            );
+            let (last, least) = (descent.last(), descent.least());
+            assert_eq!((last, least), (&[1.0][..], 1.0), "{method}");
         }
+    }
+
+    #[test]
+    fn decay_follows_the_scale_of_the_rate() {
+        let mut x = [2.0, 2.0];
+        Optimizer::new(Method::AdamW(0.1), vec![1.0, 3.0]).step(&mut x, &[0.0, 0.0]);
+        let shrunk = [1.0, 3.0].map(|scale| 2.0 * (1.0 - 0.1 * scale * DECAY));
+        assert_eq!(x, shrunk);
     }
 }

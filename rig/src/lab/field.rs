@@ -1,33 +1,30 @@
 //! Which way does the loss pull a circle, from everywhere?
 //!
 //! The mean squared error of a circle of radius 8 against a target at 1.5 × the centre, (48, 48),
-//! for every position of the circle's centre, and its gradient by that position: as arrows, whose
-//! length is the cube root of the slope so that small ones show, and as stream lines over the loss.
-//! Where no arrow is drawn the slope is 0, and descent cannot leave.
+//! for every position of the circle's centre, and its gradient by that position: as stream lines over the loss.
+//! Where no line begins the slope is 0, and descent cannot leave.
 
 use rayon::prelude::*;
 
 use super::descent::Problem;
-use super::matching::{Circle, Matching, Samples};
+use super::matching::{Form, Matching, Samples};
 use super::{COVERAGES, ResultFolder, SIZE};
 use crate::report::Table;
 use crate::report::picture::{self, heat};
 use crate::report::plot::{Panel, Path, Sheet};
 use strokefit::Result;
 use strokefit::coverage::Coverage;
-use strokefit::image::Image;
 use strokefit::math;
 
 const TARGET: [f64; 3] = [48.0, 48.0, 8.0];
 const RADIUS: f64 = 8.0;
 
 /// ε of the signed distance, px². Added to the square: the article's way of adding it, to both
-/// components (see [`circle`](super::circle)), tilts even a plateau a little.
+/// components (see [`convergence`](super::convergence)), tilts even a plateau a little.
 const EPS: f64 = 1e-4;
 
-/// Px between the positions in the table and between arrows.
+/// Px between the positions in the table.
 const TABLE_STEP: usize = 2;
-const ARROW_STEP: usize = 3;
 /// Px between the starts of stream lines.
 const STREAM_STEP: usize = 7;
 
@@ -42,37 +39,31 @@ struct Slope {
     d_y: f64,
 }
 
-impl Slope {
-    fn length(self) -> f64 {
-        math::hypot(self.d_x, self.d_y)
-    }
-}
-
 /// The slopes at all integer positions, row by row.
 struct Field {
     coverage: Coverage,
     slopes: Vec<Slope>,
 }
 
-/// Writes `field.csv`, `field-arrows.png` and `field-streams.png`.
+/// Writes `field.csv` and `field-streams.png`.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn run(output: &mut ResultFolder<'_>) -> Result<()> {
+pub fn run(output: &mut ResultFolder) -> Result<()> {
     output.doing(
         0.0,
         "the loss at every position, for six coverage functions",
     );
-    let coverages: Vec<Coverage> = [Coverage::Raw].into_iter().chain(COVERAGES).collect();
-    let fields: Vec<Field> = coverages.into_iter().map(Field::new).collect();
+    let coverages = [Coverage::Raw].into_iter().chain(COVERAGES);
+    let fields: Vec<Field> = coverages.map(Field::new).collect();
     output.text("field.csv", &table(&fields).csv())?;
-    let arrows = "descent direction of a circle towards (48, 48), over the loss";
-    output.picture("field-arrows.png", &sheet(arrows, &fields, Field::arrows)?)?;
-    let streams = "stream lines of the descent, over the loss";
-    output.picture(
-        "field-streams.png",
-        &sheet(streams, &fields, Field::streams)?,
-    )
+    let sheet = Sheet {
+        title: "stream lines of the descent, over the loss".into(),
+        columns: 3,
+        zoom: 6,
+        panels: fields.iter().map(Field::panel).collect::<Result<_>>()?,
+    };
+    output.picture("field-streams.png", &sheet.draw()?)
 }
 
 fn table(fields: &[Field]) -> Table {
@@ -89,24 +80,6 @@ fn table(fields: &[Field]) -> Table {
     table
 }
 
-fn sheet(title: &str, fields: &[Field], paths: impl Fn(&Field) -> Vec<Path>) -> Result<Image> {
-    let panel = |field: &Field| {
-        let losses: Vec<f64> = field.slopes.iter().map(|slope| slope.loss).collect();
-        let most = losses.iter().copied().fold(0.0, f64::max);
-        let image = picture::map(SIZE, &losses, |loss| heat(loss / most))?;
-        let mut panel = Panel::new(field.coverage, image);
-        panel.paths = paths(field);
-        Ok(panel)
-    };
-    let sheet = Sheet {
-        title: title.into(),
-        columns: 3,
-        zoom: 6,
-        panels: fields.iter().map(panel).collect::<Result<_>>()?,
-    };
-    sheet.draw()
-}
-
 fn positions(step: usize) -> impl Iterator<Item = (usize, usize)> {
     let ys = (step / 2..SIZE).step_by(step);
     ys.flat_map(move |y| (step / 2..SIZE).step_by(step).map(move |x| (x, y)))
@@ -114,14 +87,18 @@ fn positions(step: usize) -> impl Iterator<Item = (usize, usize)> {
 
 impl Field {
     fn new(coverage: Coverage) -> Self {
-        let grid = Samples {
+        let samples = Samples {
             size: SIZE,
             origin: 0.0,
             eps: EPS,
         };
-        let target = grid.draw::<Circle<f64>>(&TARGET, Coverage::Raw);
-        let any = [f64::NEG_INFINITY, f64::INFINITY];
-        let problem = Matching::<f64, Circle<f64>>::new(grid, coverage, target, any);
+        let problem = Matching {
+            samples,
+            form: Form::Circle,
+            coverage,
+            target: samples.draw(Form::Circle, &TARGET, Coverage::Raw),
+            radii: [f64::NEG_INFINITY, f64::INFINITY],
+        };
         let slope = |i: usize| {
             let mut gradient = [0.0; 3];
             let params = [(i % SIZE) as f64, (i / SIZE) as f64, RADIUS];
@@ -140,32 +117,24 @@ impl Field {
         self.slopes[y.min(SIZE - 1) * SIZE + x.min(SIZE - 1)]
     }
 
-    fn steepest(&self) -> f64 {
-        self.slopes
-            .iter()
-            .map(|slope| slope.length())
-            .fold(0.0, f64::max)
-    }
-
-    fn arrows(&self) -> Vec<Path> {
-        let steepest = self.steepest();
-        let arrow = |(x, y): (usize, usize)| {
-            let slope = self.at(x, y);
-            let length = slope.length();
-            let size = math::cbrt(length / steepest) * ARROW_STEP as f64;
-            let from = [x as f64 + 0.5, y as f64 + 0.5];
-            let tip = [
-                from[0] - slope.d_x / length * size,
-                from[1] - slope.d_y / length * size,
-            ];
-            (length > FLAT).then(|| line(vec![from, tip]))
-        };
-        positions(ARROW_STEP).filter_map(arrow).collect()
+    fn panel(&self) -> Result<Panel> {
+        let losses: Vec<f64> = self.slopes.iter().map(|slope| slope.loss).collect();
+        let most = losses.iter().copied().fold(0.0, f64::max);
+        let image = picture::map(SIZE, &losses, |loss| heat(loss / most))?;
+        Ok(Panel {
+            paths: self.streams(),
+            ..Panel::new(self.coverage, image)
+        })
     }
 
     fn streams(&self) -> Vec<Path> {
         let stream = |(x, y): (usize, usize)| self.stream([x as f64, y as f64]);
         let streams = positions(STREAM_STEP).map(stream);
+        let line = |points| Path {
+            points,
+            color: [255; 3],
+            arrow: true,
+        };
         streams
             .filter(|points| points.len() > 2)
             .map(line)
@@ -208,21 +177,16 @@ impl Field {
     }
 }
 
-fn line(points: Vec<[f64; 2]>) -> Path {
-    Path {
-        points,
-        color: [255, 255, 255],
-        arrow: true,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn tails_reach_where_compact_functions_do_not() {
-        let far = |coverage| Field::new(coverage).at(8, 8).length();
+        let far = |coverage| {
+            let Slope { d_x, d_y, .. } = Field::new(coverage).at(8, 8);
+            math::hypot(d_x, d_y)
+        };
         assert!(far(Coverage::Atan { k: 1.0 }) > 1e-6);
         assert!(far(Coverage::Smoothstep) < FLAT);
         assert!(far(Coverage::Raw) < FLAT);

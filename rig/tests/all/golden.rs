@@ -6,7 +6,7 @@
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-use rig::lab::shapes::Capsule;
+use rig::lab::matching::Capsule;
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::optim::{Adam, AdamParams};

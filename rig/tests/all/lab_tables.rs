@@ -3,11 +3,9 @@
 //! The tables have six digits of each loss. `convergence_tables.csv` has the problems as printed,
 //! `convergence_tables_alt.csv` the circle's target at (16, 16) and the star's ε at 1e-3.
 
-use rig::lab::descent::{Method, Trajectory};
-use rig::lab::table::{EitherPrecision, SHOWN, STEPS};
-use rig::lab::{circle, star};
+use rig::lab::convergence::{Experiment, SHOWN, STEPS, Setup};
+use rig::lab::descent::Method;
 use strokefit::coverage::Coverage;
-use strokefit::math::Real;
 
 /// Largest relative difference of the losses at [`EARLY`] steps in double precision, besides half
 /// of the table's last digit.
@@ -67,48 +65,39 @@ impl Row {
 
     /// Our losses at the same steps, from a start `nudge` px off in x and y if it is a circle.
     fn ours(&self, nudge: f64) -> Vec<f64> {
+        let (setup, steps) = (self.setup(nudge), SHOWN.iter().chain(&[STEPS]));
         if self.single {
-            self.descend::<f32>(nudge)
-        } else {
-            self.descend::<f64>(nudge)
-        }
-    }
-
-    fn descend<T: Real>(&self, nudge: f64) -> Vec<f64> {
-        let shown = |descent: Trajectory<T>| {
-            let steps = SHOWN.iter().chain(&[STEPS]);
+            let descent = setup.descend::<f32>();
             steps.map(|&step| descent.loss_at(step)).collect()
-        };
-        if self.experiment.starts_with("circle") {
-            shown(self.circle(nudge).descend())
         } else {
-            shown(self.star().descend())
+            let descent = setup.descend::<f64>();
+            steps.map(|&step| descent.loss_at(step)).collect()
         }
     }
 
-    fn circle(&self, nudge: f64) -> circle::Setup {
-        circle::Setup {
-            target: if self.alternative { 16.0 } else { 48.0 },
-            start: nudge + if self.init == "offset" { 48.0 } else { 30.0 },
-            coverage: self.coverage,
-            method: self.method(2.0),
-        }
-    }
-
-    fn star(&self) -> star::Setup {
-        star::Setup {
-            eps: if self.alternative { 1e-3 } else { 1e-4 },
-            coverage: self.coverage,
-            method: self.method(0.5),
-        }
-    }
-
-    fn method(&self, rate: f64) -> Method {
-        match self.optimizer.as_str() {
-            "adam" => Method::adam(rate),
-            "adamw" => Method::adamw(rate),
-            "rmsprop" => Method::rmsprop(0.1),
+    fn setup(&self, nudge: f64) -> Setup {
+        let is_circle = self.experiment.starts_with("circle");
+        let rate = if is_circle { 2.0 } else { 0.5 };
+        let experiment = if is_circle {
+            Experiment::Circle {
+                target: if self.alternative { 16.0 } else { 48.0 },
+                start: nudge + if self.init == "offset" { 48.0 } else { 30.0 },
+            }
+        } else {
+            Experiment::Star {
+                eps: if self.alternative { 1e-3 } else { 1e-4 },
+            }
+        };
+        let method = match self.optimizer.as_str() {
+            "adam" => Method::Adam(rate),
+            "adamw" => Method::AdamW(rate),
+            "rmsprop" => Method::RmsProp(0.1),
             other => panic!("no optimiser is called {other}"),
+        };
+        Setup {
+            experiment,
+            coverage: self.coverage,
+            method,
         }
     }
 

@@ -102,7 +102,7 @@ impl Run<'_> {
 /// # Errors
 /// When a file cannot be written or a plot not be drawn.
 pub fn publish(
-    output: &mut ResultFolder<'_>,
+    output: &mut ResultFolder,
     folder: &Path,
     pictures: &[PathBuf],
     report: &ParetoReport,

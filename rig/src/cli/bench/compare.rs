@@ -57,7 +57,7 @@ impl Compare {
     pub(super) fn run(
         &self,
         folder: &Path,
-        files: &mut ResultFolder<'_>,
+        files: &mut ResultFolder,
         verbosity: Verbosity,
     ) -> Result<usize> {
         let programs = [Program::new(&self.old)?, Program::new(&self.new)?];

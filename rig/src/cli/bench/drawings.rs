@@ -86,7 +86,7 @@ impl Run<'_> {
         &self,
         truths: impl Iterator<Item = strokefit::Result<Truth>>,
         peers: Kind,
-        files: &mut ResultFolder<'_>,
+        files: &mut ResultFolder,
     ) -> Result<usize> {
         let mut gallery = Gallery::default();
         let mut tell = |outcome: Outcome<'_>| {
@@ -115,7 +115,7 @@ impl Run<'_> {
 
 impl Inverse {
     /// Runs it; how many cases failed.
-    pub(super) fn run(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
+    pub(super) fn run(&self, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
         let (strokes, mut shapes) = self.drawings(verbosity)?;
         if self.extents.short {
             shapes = few(shapes, FEW_DRAWINGS);
@@ -187,7 +187,7 @@ impl Inverse {
 
 impl Robust {
     /// Runs it; how many cases failed.
-    pub(super) fn run(&self, files: &mut ResultFolder<'_>, verbosity: Verbosity) -> Result<usize> {
+    pub(super) fn run(&self, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
         let paths = named(&self.pictures, &ENDINGS)?.into_iter();
         let mut paths: Vec<PathBuf> = paths.map(|(path, _)| path).collect();
         if self.extents.short {

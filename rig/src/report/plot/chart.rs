@@ -3,9 +3,8 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{Drawn, FONT, draw, register, undrawn};
+use super::{Drawn, FONT, register, undrawn};
 use strokefit::Result;
-use strokefit::image::Image;
 use strokefit::math;
 
 /// Colours that are told apart with any kind of colour vision: Okabe & Ito, "Color universal
@@ -46,45 +45,6 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// The courses of several descents, on a logarithmic axis: names, and the loss at each step.
-    pub fn of_losses<'a>(
-        title: &str,
-        descents: impl IntoIterator<Item = (String, &'a [f64])>,
-    ) -> Self {
-        let points = |losses: &[f64]| {
-            let steps = losses.iter().enumerate();
-            steps.map(|(step, &loss)| [step as f64, loss]).collect()
-        };
-        let series = descents.into_iter();
-        Self {
-            title: title.into(),
-            axes: ["step".into(), "loss".into()],
-            logarithmic: true,
-            series: series
-                .map(|(name, losses)| (name, points(losses)))
-                .collect(),
-            ..Self::default()
-        }
-    }
-
-    /// The chart as a picture of 760 × 460 px.
-    ///
-    /// # Errors
-    /// As [`draw_sized`](Self::draw_sized).
-    pub fn draw(&self) -> Result<Image> {
-        self.draw_sized(760, 460)
-    }
-
-    /// The chart as a picture of `width × height` px.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Picture`](strokefit::ErrorKind::Picture) when there is no room for it.
-    pub fn draw_sized(&self, width: usize, height: usize) -> Result<Image> {
-        draw(Image::filled(width, height, [1.0; 3])?, |root| {
-            self.draw_on(root)
-        })
-    }
-
     /// The chart as SVG text of 640 × 420 px, for a page.
     ///
     /// # Errors
@@ -273,27 +233,11 @@ fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::is_dark;
     use super::*;
 
     #[test]
-    fn charts_have_text_and_lines_on_any_machine() {
-        let chart = Chart {
-            title: "loss".into(),
-            axes: ["step".into(), "loss".into()],
-            logarithmic: true,
-            series: vec![("a".into(), vec![[0.0, 1.0], [1.0, 0.1], [2.0, 0.0]])],
-            ..Chart::default()
-        };
-        let image = chart.draw_sized(400, 300).unwrap();
-        assert!(is_dark(&image, 0..400, 0..35), "no title");
-        assert!(is_dark(&image, 80..390, 60..240), "no lines");
-    }
-
-    #[test]
     fn a_chart_of_nothing_is_empty_axes() {
-        assert!(Chart::default().draw_sized(300, 200).is_ok());
-        assert!(Chart::default().draw_sized(0, 200).is_err());
+        assert!(Chart::default().svg().is_ok());
     }
 
     #[test]
