@@ -327,12 +327,13 @@ impl Renderer {
         } = *self;
         // A tile that the same strokes reach as before has the loss that it had: after an edit, most of a picture.
         let fingerprints = polylines.fingerprints();
-        // A picture behind the strokes doesn't count: what is kept doesn't outlive it.
-        let page = match backdrop {
-            Backdrop::Color(color) => color.map(|v| u64::from(v.to_bits())),
-            Backdrop::Canvas(_) => [0; 3],
+        // A picture behind the strokes doesn't count, as what is kept doesn't outlive it; but it is no colour.
+        let color = match backdrop {
+            Backdrop::Color(color) => color,
+            Backdrop::Canvas(_) => [f32::NAN; 3],
         };
-        let page = page.into_iter().fold(0, rng::with);
+        let bits = color.map(|v| u64::from(v.to_bits()));
+        let page = bits.into_iter().fold(0, rng::with);
         let tiles = tiles.par_iter_mut().enumerate().with_max_len(1);
         let losses = tiles.map(|(tile, work)| {
             let strokes = work.listed.iter().map(|listed| listed.stroke as usize);

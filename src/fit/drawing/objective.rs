@@ -343,6 +343,45 @@ mod tests {
     }
 
     #[test]
+    fn a_tile_that_keeps_its_loss_has_that_of_the_strokes_that_reach_it() {
+        let left = [[5.0, 5.0], [60.0, 9.0], [12.0, 58.0]];
+        let moved = [[5.0, 5.0], [60.5, 9.0], [12.0, 58.0]];
+        let right = [[90.0, 20.0], [140.0, 9.0], [112.0, 88.0]];
+        let strokes = |left, color, opacity| -> Strokes {
+            let left = area(left, color, 0.6);
+            [left, area(&right, [0.1, 0.5, 0.8], opacity)]
+                .iter()
+                .collect()
+        };
+        let red = [0.9, 0.2, 0.3];
+        let drawings = [
+            strokes(&left, red, 1.0),
+            strokes(&moved, red, 1.0),
+            strokes(&left, [0.9, 0.2, 0.4], 1.0),
+            strokes(&left, red, 0.9),
+        ];
+        let target = Target::new(random(3, [150, 100]), None);
+        let mut renderer = Renderer::new(target.grid(), fearless_simd::Level::new());
+        let edge = Softness {
+            coverage: crate::coverage::Coverage::Smoothstep,
+            width: 1.3,
+        };
+        let picture = random(4, [150, 100]);
+        let [black, white] = [[0.0; 3], [1.0; 3]].map(Backdrop::Color);
+        // Each drawing follows each other one, and itself.
+        for backdrop in [black, Backdrop::Canvas(&picture), white] {
+            for i in [0, 1, 0, 2, 2, 1, 3, 0, 3, 1, 2, 0] {
+                let mut loss =
+                    |loss: &Objective<'_>| renderer.loss(&drawings[i], edge, backdrop, loss);
+                // An objective of another target that keeps nothing.
+                let anew = Target::new(target.canvas.clone(), None);
+                let expected = loss(&Objective::squared(&anew));
+                assert_eq!(loss(&Objective::squared(&target)), expected, "drawing {i}");
+            }
+        }
+    }
+
+    #[test]
     fn tiles_that_areas_fill_are_differentiated_by_their_sums_as_by_their_pixels() {
         // Both areas fill tiles between edges: the lower one has a notch, the upper one ends on the page.
         let notched = [
