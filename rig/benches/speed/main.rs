@@ -18,7 +18,8 @@
 
 mod count;
 
-use rig::bench::measure::{DEPTH, EDGE, StrokeSize, fastest, go_to_root, thread_counts};
+use rig::bench::measure::{DEPTH, EDGE, StrokeSize, fastest, go_to_root};
+use rig::bench::scaling::thread_counts;
 use strokefit::Result;
 use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::Image;

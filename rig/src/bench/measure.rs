@@ -37,28 +37,6 @@ impl StrokeSize {
         2.0 * outer * self.length_px + PI * outer * outer
     }
 
-    /// The size at which `count` strokes cover each of `pixels` [`DEPTH`] times on average; four radii long
-    /// and half opaque.
-    pub fn covering(pixels: f32, count: usize) -> Self {
-        let of_radius = |radius_px: f32| Self {
-            radius_px,
-            length_px: 4.0 * radius_px,
-            opacity: 0.5,
-        };
-        let wanted = DEPTH * pixels / count.max(1) as f32;
-        // The area grows with the radius, so bisection finds it.
-        let (mut low, mut high) = (0.0, pixels.sqrt());
-        for _ in 0..40 {
-            let middle = f32::midpoint(low, high);
-            if of_radius(middle).area_px() < wanted {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        of_radius(high)
-    }
-
     /// `count` strokes of random place, direction and colour, the same in every run.
     pub fn strokes(self, grid: Grid, count: usize) -> Strokes {
         (0..count as u64).map(|i| self.stroke(grid, i)).collect()
@@ -107,34 +85,4 @@ pub fn fastest<const N: usize>(rounds: usize, mut jobs: [&mut dyn FnMut(); N]) -
         }
     }
     best
-}
-
-/// 1, 2, 4, … and all of the machine's threads.
-pub fn thread_counts() -> Vec<usize> {
-    let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let doubling = std::iter::successors(Some(1), |n| Some(2 * n));
-    let mut counts: Vec<usize> = doubling.take_while(|&n| n < all).collect();
-    counts.push(all);
-    counts
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn strokes_cover_the_picture_as_often_as_is_said() {
-        for count in [10, 1000, 100_000] {
-            let pixels = 1e6;
-            let depth = StrokeSize::covering(pixels, count).area_px() * count as f32 / pixels;
-            assert!((depth - DEPTH).abs() < 0.1, "{count}: {depth}");
-        }
-    }
-
-    #[test]
-    fn threads_double_up_to_all() {
-        let counts = thread_counts();
-        assert_eq!(counts[0], 1);
-        assert!(counts.is_sorted_by(|a, b| a < b), "{counts:?}");
-    }
 }

@@ -9,10 +9,9 @@
 //! | [`scaling`] | how do time and memory grow with strokes, pixels and threads? |
 //!
 //! Each returns plain records of [`report`](crate::report), which turns them into tables, plots and pages.
-//! `strokefit-rig` runs them. [`child`] runs one case in a process of its own, and [`peers`] knows who else makes
-//! drawings. [`drawings`] makes pictures of known ones.
+//! `strokefit-rig` runs them. [`programs`] runs whoever makes drawings, each in a process of its own, and [`drawings`] makes
+//! pictures of known ones.
 
-pub mod child;
 pub mod compare;
 mod damages;
 pub mod drawings;
@@ -22,7 +21,6 @@ pub mod gallery;
 pub mod inverse;
 pub mod measure;
 pub mod pareto;
-pub mod peers;
-pub mod quality;
+pub mod programs;
 pub mod scaling;
 pub mod stability;

@@ -1,100 +1,53 @@
-//! Growth of time and memory with strokes, pixels and threads.
-//!
-//! Each point runs in a process of its own, since a process has only one peak memory.
+//! Growth of the time and memory of fits with strokes, pixels and threads.
 
-use std::path::PathBuf;
-use std::time::Instant;
+use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
-use super::measure::{EDGE, StrokeSize, fastest, thread_counts};
-use crate::report::scaling::{PointEntry, ScalingReport, SeriesEntry};
+use super::programs::{Cost, STROKEFIT};
+use crate::report::scaling::{LARGEST, PointEntry, ScalingReport, SeriesEntry};
 use strokefit::Result;
-use strokefit::fit::{Budget, Config, Execution, Fitter, Objective, Preset};
 use strokefit::image::Image;
-use strokefit::loss::Loss;
 use strokefit::math;
-use strokefit::render::{Backdrop, Canvas, Gradients, Renderer};
-use strokefit::report::Usage;
 use strokefit::rng;
 
-const BACKDROP: [f32; 3] = [0.5; 3];
-
-/// Values that a series keeps unless it varies them: millions of pixels, and strokes.
-const FIXED: (f64, usize) = (1.0, 5000);
+/// Values that a series keeps unless it varies them: pixels, and strokes.
+const FIXED: [f64; 2] = [1e6, 5000.0];
 /// Values in a short run.
-const FIXED_SHORT: (f64, usize) = (0.1, 1000);
+const FIXED_SHORT: [f64; 2] = [0.1e6, 1000.0];
 
-/// The largest case: millions of pixels, and strokes.
-const LARGEST: (f64, usize) = (24.0, 20_000);
+/// A task and its options: a draft without polish, as quick as there is; a draft; the default fit.
+const STAGES: (&str, &str) = ("stages", "--preset draft --no-polish");
+const DRAFT: (&str, &str) = ("draft", "--preset draft");
+const FIT: (&str, &str) = ("fit", "--preset balanced");
 
-/// Time spent on one point of [`Workload::Backward`], s.
-const ROUNDS_S: f64 = 1.0;
+/// What grows along a series, from small to large; its task.
+type Series = ((&'static str, &'static str), &'static str, Vec<f64>);
 
-/// Work that is timed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Workload {
-    /// One call of `Renderer::backward`.
-    Backward,
-    /// A draft without polish, as quick as there is.
-    Stages,
-    /// A draft.
-    Draft,
-    /// The default fit.
-    Fit,
-}
-
-impl Workload {
-    /// The word for it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Backward => "backward",
-            Self::Stages => "stages",
-            Self::Draft => "draft",
-            Self::Fit => "fit",
-        }
+fn series(short: bool) -> Vec<Series> {
+    let threads = || thread_counts().iter().map(|&n| n as f64).collect();
+    if short {
+        return vec![
+            (STAGES, "strokes", vec![300.0, 1e3, 3e3]),
+            (STAGES, "pixels", vec![0.05e6, 0.1e6, 0.2e6]),
+            (STAGES, "threads", threads()),
+        ];
     }
+    vec![
+        (STAGES, "strokes", vec![100.0, 1e3, 1e4, 1e5]),
+        (STAGES, "pixels", vec![0.05e6, 0.2e6, 1e6, 4e6, 24e6]),
+        (STAGES, "threads", threads()),
+        (FIT, "strokes", vec![300.0, 1e3, 3e3]),
+        (FIT, "pixels", vec![0.05e6, 0.2e6, 0.8e6]),
+        (FIT, "threads", threads()),
+    ]
 }
 
-/// Quantity that grows along a series.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Axis {
-    Strokes,
-    Pixels,
-    Threads,
-}
-
-impl Axis {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Strokes => "strokes",
-            Self::Pixels => "pixels",
-            Self::Threads => "threads",
-        }
-    }
-}
-
-/// One point of a series.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Point {
-    /// Work that is timed.
-    pub workload: Workload,
-    /// The picture, resampled to the size; a synthetic one when `None`.
-    pub picture: Option<PathBuf>,
-    /// Its size, in millions of pixels.
-    pub megapixels: f64,
-    /// Number of strokes.
-    pub strokes: usize,
-    /// Number of threads.
-    pub threads: usize,
-}
-
-/// Points that differ in one thing.
-struct Series {
-    workload: Workload,
-    axis: Axis,
-    values: Vec<f64>,
+/// 1, 2, 4, … and all of the machine's threads.
+pub fn thread_counts() -> Vec<usize> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let doubling = std::iter::successors(Some(1), |n| Some(2 * n));
+    let mut counts: Vec<usize> = doubling.take_while(|&n| n < all).collect();
+    counts.push(all);
+    counts
 }
 
 /// Measures all series on `picture`, or on a synthetic one, and says a line for each. A point that cannot be
@@ -104,28 +57,39 @@ struct Series {
 /// When the picture cannot be read.
 pub fn run(
     short: bool,
-    picture: Option<PathBuf>,
-    measure: &dyn Fn(&Point) -> Result<PointEntry>,
+    picture: Option<&Path>,
     say: &mut dyn FnMut(&str),
 ) -> Result<ScalingReport> {
-    if let Some(path) = &picture {
-        Image::open(path)?;
-    }
+    let picture = picture.map(Image::open).transpose()?;
+    let picture = picture.map(|picture| picture.flattened([1.0; 3]));
     let mut report = ScalingReport::default();
-    for series in if short { brief() } else { thorough() } {
-        let entry = series.measured(short, picture.as_ref(), measure);
+    let fixed = if short { FIXED_SHORT } else { FIXED };
+    let all = thread_counts().pop().unwrap_or(1) as f64;
+    for ((task, options), axis, values) in series(short) {
+        let (mut measured, mut points, mut failures) = (Vec::new(), Vec::new(), Vec::new());
+        for &value in &values {
+            let along = |name, fixed| if axis == name { value } else { fixed };
+            let pixels = along("pixels", fixed[0]);
+            let strokes = along("strokes", fixed[1]);
+            match point(
+                picture.as_ref(),
+                options,
+                [pixels, strokes, along("threads", all)],
+            ) {
+                Ok(point) => {
+                    measured.push(value);
+                    points.push(point);
+                }
+                Err(error) => failures.push(format!("at {value}: {error}")),
+            }
+        }
+        let entry = SeriesEntry::new(task, axis, &measured, points).failing(failures);
         say(&entry.line());
         report.series.push(entry);
     }
     if !short {
-        let point = Point {
-            workload: Workload::Draft,
-            picture,
-            megapixels: LARGEST.0,
-            strokes: LARGEST.1,
-            threads: all_threads(),
-        };
-        match measure(&point) {
+        let [pixels, strokes] = LARGEST;
+        match point(picture.as_ref(), DRAFT.1, [pixels, strokes, all]) {
             Ok(point) => report.largest = Some(point),
             Err(error) => report.largest_failure = Some(error.to_string()),
         }
@@ -134,189 +98,30 @@ pub fn run(
     Ok(report)
 }
 
-fn all_threads() -> usize {
-    thread_counts().pop().unwrap_or(1)
-}
-
-fn thorough() -> Vec<Series> {
-    let decades = [100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5];
-    let pixels = [0.05e6, 0.2e6, 1e6, 4e6, 24e6];
-    vec![
-        Series::new(Workload::Backward, Axis::Strokes, &decades),
-        Series::new(Workload::Backward, Axis::Pixels, &pixels),
-        Series::of_threads(Workload::Backward),
-        Series::new(Workload::Stages, Axis::Strokes, &[100.0, 1e3, 1e4, 1e5]),
-        Series::new(Workload::Stages, Axis::Pixels, &pixels),
-        Series::of_threads(Workload::Stages),
-        Series::new(Workload::Fit, Axis::Strokes, &[300.0, 1e3, 3e3]),
-        Series::new(Workload::Fit, Axis::Pixels, &[0.05e6, 0.2e6, 0.8e6]),
-        Series::of_threads(Workload::Fit),
-    ]
-}
-
-fn brief() -> Vec<Series> {
-    vec![
-        Series::new(Workload::Backward, Axis::Strokes, &[300.0, 3e3, 3e4]),
-        Series::new(Workload::Backward, Axis::Pixels, &[0.05e6, 0.2e6, 1e6]),
-        Series::of_threads(Workload::Backward),
-        Series::new(Workload::Stages, Axis::Strokes, &[300.0, 1e3, 3e3]),
-        Series::new(Workload::Stages, Axis::Pixels, &[0.05e6, 0.1e6, 0.2e6]),
-        Series::of_threads(Workload::Stages),
-    ]
-}
-
-impl Series {
-    fn new(workload: Workload, axis: Axis, values: &[f64]) -> Self {
-        Self {
-            workload,
-            axis,
-            values: values.to_vec(),
-        }
-    }
-
-    fn of_threads(workload: Workload) -> Self {
-        let threads: Vec<f64> = thread_counts().iter().map(|&n| n as f64).collect();
-        Self::new(workload, Axis::Threads, &threads)
-    }
-
-    fn measured(
-        &self,
-        short: bool,
-        picture: Option<&PathBuf>,
-        measure: &dyn Fn(&Point) -> Result<PointEntry>,
-    ) -> SeriesEntry {
-        let (mut values, mut points, mut failures) = (Vec::new(), Vec::new(), Vec::new());
-        for (&value, point) in self.values.iter().zip(self.points(short, picture)) {
-            match measure(&point) {
-                Ok(point) => {
-                    values.push(value);
-                    points.push(point);
-                }
-                Err(error) => failures.push(format!("at {value}: {error}")),
-            }
-        }
-        SeriesEntry::new(self.workload.word(), self.axis.word(), &values, points).failing(failures)
-    }
-
-    fn points(&self, short: bool, picture: Option<&PathBuf>) -> Vec<Point> {
-        let (megapixels, strokes) = if short { FIXED_SHORT } else { FIXED };
-        let point = |&value: &f64| {
-            let point = Point {
-                workload: self.workload,
-                picture: picture.cloned(),
-                megapixels,
-                strokes,
-                threads: all_threads(),
-            };
-            match self.axis {
-                Axis::Strokes => Point {
-                    strokes: value as usize,
-                    ..point
-                },
-                Axis::Pixels => Point {
-                    megapixels: value / 1e6,
-                    ..point
-                },
-                Axis::Threads => Point {
-                    threads: value as usize,
-                    ..point
-                },
-            }
-        };
-        self.values.iter().map(point).collect()
-    }
-}
-
-/// Wall and CPU time, s.
-#[derive(Debug, Clone, Copy)]
-struct Time {
-    wall_s: f64,
-    cpu_s: Option<f64>,
-}
-
-impl Point {
-    /// Measures this point. The peak memory of this process is reported as the point's.
-    ///
-    /// # Errors
-    /// When the picture cannot be read or there are too many threads.
-    pub fn measure(&self) -> Result<PointEntry> {
-        let pixels = self.megapixels * 1e6;
-        let picture = match &self.picture {
-            Some(path) => resampled(&Image::open(path)?.flattened([1.0; 3]), pixels)?,
-            None => made(pixels)?,
-        };
-        let time = match self.workload {
-            Workload::Backward => self.backward(&picture)?,
-            Workload::Stages => self.fit(&picture, Preset::Draft, false)?,
-            Workload::Draft => self.fit(&picture, Preset::Draft, true)?,
-            Workload::Fit => self.fit(&picture, Preset::Balanced, true)?,
-        };
-        Ok(PointEntry {
-            megapixels: self.megapixels,
-            strokes: self.strokes,
-            threads: self.threads,
-            wall_s: time.wall_s,
-            cpu_s: time.cpu_s,
-            peak_rss_bytes: Usage::now().peak_rss_bytes,
-        })
-    }
-
-    fn execution(&self) -> Execution {
-        Execution {
-            threads: Some(self.threads),
-            ..Execution::default()
-        }
-    }
-
-    /// Times the backward pass on strokes of one size, chosen so that any number of them covers the picture
-    /// equally often: the shortest wall time of several rounds, and their mean CPU time.
-    fn backward(&self, picture: &Image) -> Result<Time> {
-        let target = Canvas::from_image(picture);
-        let grid = target.grid();
-        let size = StrokeSize::covering((grid.width * grid.height) as f32, self.strokes);
-        let strokes = size.strokes(grid, self.strokes);
-        let objective = Objective::new(Loss::L2, &target);
-        let level = self.execution().simd.require()?;
-        Ok(self.execution().pool()?.install(|| {
-            let mut renderer = Renderer::new(grid, level);
-            let mut gradients = Gradients::default();
-            let backdrop = Backdrop::Color(BACKDROP);
-            let mut run =
-                || renderer.backward(&strokes, EDGE, backdrop, &objective, &mut gradients);
-            let [once] = fastest(1, [&mut run]);
-            let rounds = (ROUNDS_S / once).clamp(5.0, 500.0) as usize;
-            let before = Usage::now().cpu_s;
-            let [wall_s] = fastest(rounds, [&mut run]);
-            let cpu_s = Usage::now().cpu_s.zip(before);
-            Time {
-                wall_s,
-                cpu_s: cpu_s.map(|(now, before)| (now - before) / rounds as f64),
-            }
-        }))
-    }
-
-    fn fit(&self, picture: &Image, preset: Preset, polish: bool) -> Result<Time> {
-        let config = Config {
-            budget: Budget {
-                strokes: Some(self.strokes),
-                ..Budget::default()
-            },
-            preset,
-            polish,
-            ..Config::default()
-        };
-        let (start, before) = (Instant::now(), Usage::now().cpu_s);
-        Fitter::new(config)
-            .execution(self.execution())
-            .fit(picture)?;
-        Ok(Time {
-            wall_s: start.elapsed().as_secs_f64(),
-            cpu_s: Usage::now()
-                .cpu_s
-                .zip(before)
-                .map(|(now, before)| now - before),
-        })
-    }
+/// Measures a fit.
+fn point(
+    picture: Option<&Image>,
+    options: &str,
+    [pixels, strokes, threads]: [f64; 3],
+) -> Result<PointEntry> {
+    let picture = match picture {
+        Some(picture) => resampled(picture, pixels)?,
+        None => made(pixels)?,
+    };
+    let settings = format!("{options} --strokes {strokes} --threads {threads}");
+    let Cost {
+        wall_s,
+        cpu_s,
+        peak_rss_bytes,
+    } = STROKEFIT.trace(&picture, &settings)?.cost;
+    Ok(PointEntry {
+        megapixels: pixels / 1e6,
+        strokes: strokes as usize,
+        threads: threads as usize,
+        wall_s,
+        cpu_s,
+        peak_rss_bytes,
+    })
 }
 
 /// A picture of about `pixels` pixels with detail at every scale.
@@ -382,12 +187,9 @@ mod tests {
     #[test]
     fn pictures_have_about_the_pixels_asked_for() {
         for pixels in [1.0, 5_000.0, 50_000.0] {
-            let (new, small) = (
-                made(pixels).unwrap(),
-                Image::filled(40, 30, [0.5; 3]).unwrap(),
-            );
-            let again = resampled(&small, pixels).unwrap();
-            for image in [new, again] {
+            let small = Image::filled(40, 30, [0.5; 3]).unwrap();
+            for image in [made(pixels), resampled(&small, pixels)] {
+                let image = image.unwrap();
                 let count = (image.width() * image.height()) as f64;
                 assert!((count / pixels - 1.0).abs() < 0.05, "{count} of {pixels}");
             }
@@ -395,15 +197,9 @@ mod tests {
     }
 
     #[test]
-    fn a_point_has_its_time_and_memory() {
-        let point = Point {
-            workload: Workload::Backward,
-            picture: None,
-            megapixels: 0.002,
-            strokes: 10,
-            threads: 1,
-        };
-        let entry = point.measure().unwrap();
-        assert!(entry.wall_s > 0.0 && entry.strokes == 10);
+    fn threads_double_up_to_all() {
+        let counts = thread_counts();
+        assert_eq!(counts[0], 1);
+        assert!(counts.is_sorted_by(|a, b| a < b), "{counts:?}");
     }
 }

@@ -1,21 +1,6 @@
-//! Values of options: numbers and choices of a few words.
+//! Values of options: numbers.
 
-use std::fmt::Display;
-use std::str::FromStr;
-
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use strokefit::fit::{MAX_STROKES, MAX_THREADS};
-
-/// One of the values, by the words that they are read from and written as, each with its help.
-pub(super) fn one_of<T, const N: usize>(
-    values: [(T, &'static str); N],
-) -> impl TypedValueParser<Value = T>
-where
-    T: Clone + Display + FromStr<Err = strokefit::Error> + Send + Sync + 'static,
-{
-    let words = values.map(|(value, help)| PossibleValue::new(value.to_string()).help(help));
-    PossibleValuesParser::new(words).try_map(|word| word.parse::<T>())
-}
 
 /// Longest side of a picture of a known drawing, px; it is rendered at four times that.
 const MAX_SIDE: usize = 2048;

@@ -10,10 +10,14 @@ use anyhow::Result;
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use strokefit::cli::{Status, Verbosity, usage};
 
-use bench::{Benchmark, Measurement};
+use bench::Benchmark;
 
 /// Runs the program and returns its exit status. `args` begin with the program's name.
 pub fn main(args: Vec<OsString>) -> u8 {
+    // The measurements have this program fit, so that what is measured is the library that it was built with.
+    if args.get(1).is_some_and(|word| word == "fit") {
+        return strokefit::cli::main(args);
+    }
     let status = match parse(&args) {
         Ok(args) => run(&args).unwrap_or_else(|error| strokefit::cli::fail(&error)),
         Err(error) => usage::refuse(&error.into(), &args),
@@ -31,7 +35,7 @@ pub fn main(args: Vec<OsString>) -> u8 {
     version,
     after_help = "Examples:
   strokefit-rig pareto photo.png -o out --short
-  strokefit-rig pareto photo.png -o out --svgs others
+  strokefit-rig pareto photo.png -o out --settings '--time 0.5' --settings '--time 1'
   strokefit-rig stability -o out --short
   strokefit-rig inverse icons/*.svg -o out
   strokefit-rig inverse emoji -o out --short
@@ -52,9 +56,6 @@ enum Rig {
     #[command(flatten)]
     Benchmark(Benchmark),
     Lab(lab::Args),
-    /// Measure one case on behalf of another process of this program
-    #[command(hide = true)]
-    Case(Measurement),
 }
 
 fn parse(args: &[OsString]) -> Result<Args, clap::Error> {
@@ -73,7 +74,6 @@ fn run(args: &Args) -> Result<Status> {
     match &args.rig {
         Rig::Benchmark(benchmark) => bench::run(benchmark, args.verbosity),
         Rig::Lab(lab) => lab::run(lab, args.verbosity),
-        Rig::Case(measurement) => bench::measure(measurement),
     }
 }
 

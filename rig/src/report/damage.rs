@@ -59,12 +59,6 @@ impl Damage {
             .map_or_else(|| picture.clone(), |damage| format!("{picture}, {damage}"))
     }
 
-    /// A name with the damage behind it.
-    pub(super) fn after(self, name: &str) -> String {
-        self.words()
-            .map_or_else(|| name.to_owned(), |damage| format!("{name} {damage}"))
-    }
-
     /// The damage in words; `None` if there is none.
     pub(super) fn words(self) -> Option<String> {
         match self {

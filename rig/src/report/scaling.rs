@@ -3,16 +3,17 @@
 use serde::{Deserialize, Serialize};
 use strokefit::report::SCHEMA;
 
-use super::plot::Chart;
-use super::stability::CaseVerdict;
-use super::{Column, Table};
-use strokefit::Result;
+use super::statistics::optional;
+use super::{CaseVerdict, Column, Table};
 use strokefit::math;
 
 /// Largest exponent by which CPU time and memory may grow with strokes or pixels: linear growth, plus noise.
 const MAX_GROWTH: f64 = 1.15;
 /// Largest exponent by which CPU time may grow with threads: none, plus noise.
 const MAX_OVERHEAD: f64 = 0.35;
+/// The largest case: pixels, and strokes.
+pub const LARGEST: [f64; 2] = [24e6, 20_000.0];
+
 /// Most memory that the largest picture may take, bytes.
 const MAX_BYTES: u64 = 4 << 30;
 
@@ -43,7 +44,7 @@ impl Default for ScalingReport {
 /// Growth of one task along one axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SeriesEntry {
-    /// Task that was timed: `backward`, `stages` or `fit`.
+    /// Task that was timed: `stages` or `fit`.
     pub task: String,
     /// Quantity that grows: `strokes`, `pixels` or `threads`.
     pub axis: String,
@@ -103,11 +104,6 @@ impl Exponent {
     }
 
     fn words(self) -> String {
-        let word = |v: Option<f64>| v.map_or_else(|| "unknown".to_owned(), |v| format!("{v:.2}"));
-        format!("{} (last two {})", word(self.all), word(self.last))
-    }
-
-    fn short(self) -> String {
         let word = |v: Option<f64>| v.map_or_else(|| "?".to_owned(), |v| format!("{v:.2}"));
         format!("{} ({})", word(self.all), word(self.last))
     }
@@ -188,7 +184,7 @@ impl SeriesEntry {
         } = self;
         let failures: String = failures.iter().map(|why| format!(", {why}")).collect();
         format!(
-            "{task} against {axis}: exponents of CPU time {}, wall time {}, memory {}{failures}: {}",
+            "{task} against {axis}: exponents (of the last two) of CPU time {}, wall time {}, memory {}{failures}: {}",
             cpu.words(),
             wall.words(),
             memory.words(),
@@ -231,10 +227,10 @@ impl ScalingReport {
             ("what", |s| format!("{}, {}", s.task, s.axis)),
             ("from … to", |s| ends(&s.values, |v| format!("{v}"))),
             ("exponent of wall time (last two points)", |s| {
-                s.wall.short()
+                s.wall.words()
             }),
-            ("of CPU time", |s| s.cpu.short()),
-            ("of memory", |s| s.memory.short()),
+            ("of CPU time", |s| s.cpu.words()),
+            ("of memory", |s| s.memory.words()),
             ("wall time, s", |s| {
                 ends(&s.points, |p| significant(p.wall_s))
             }),
@@ -262,7 +258,7 @@ impl ScalingReport {
         let mut table = Table::new(&head);
         for series in &self.series {
             for point in &series.points {
-                let mib = point.peak_rss_bytes.map(|bytes| bytes >> 20);
+                let mib = point.peak_rss_bytes.map(|bytes| (bytes >> 20) as f64);
                 table.row([
                     series.task.clone(),
                     series.axis.clone(),
@@ -270,8 +266,8 @@ impl ScalingReport {
                     point.strokes.to_string(),
                     point.threads.to_string(),
                     format!("{:.4}", point.wall_s),
-                    point.cpu_s.map_or_else(String::new, |s| format!("{s:.4}")),
-                    mib.map_or_else(String::new, |mib| mib.to_string()),
+                    optional(point.cpu_s, 4),
+                    optional(mib, 0),
                 ]);
             }
         }
@@ -288,37 +284,6 @@ impl ScalingReport {
         let lines: String = lines.map(|line| format!("- {line}\n")).collect();
         let (growth, all) = (self.growth_table().markdown(), self.table().markdown());
         format!("# Growth\n\n{growth}\n## Verdicts\n\n{lines}\n## Points\n\n{all}")
-    }
-
-    /// A plot for each axis: name and SVG.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Picture`](strokefit::ErrorKind::Picture) when one cannot be drawn.
-    pub fn charts(&self) -> Result<Vec<(&'static str, String)>> {
-        let chart = |axis: &'static str| Ok((axis, self.chart(axis).svg()?));
-        ["strokes", "pixels", "threads"]
-            .into_iter()
-            .map(chart)
-            .collect()
-    }
-
-    fn chart(&self, axis: &str) -> Chart {
-        let series = self.series.iter().filter(|series| series.axis == axis);
-        let lines = series.map(|series| {
-            let points = series.values.iter().zip(&series.points);
-            let points: Vec<_> = points.map(|(&x, point)| [x, point.wall_s]).collect();
-            (series.task.clone(), points)
-        });
-        let lines: Vec<_> = lines.collect();
-        Chart {
-            title: format!("wall time against {axis}"),
-            axes: [axis.into(), "s".into()],
-            logarithmic: true,
-            logarithmic_x: true,
-            legend_beside: true,
-            marks: lines.iter().map(|(_, points)| points.clone()).collect(),
-            series: lines,
-        }
     }
 }
 

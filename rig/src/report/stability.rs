@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use strokefit::report::SCHEMA;
 
-use super::{Column, Table};
+use super::{CaseVerdict, Column, Table};
 
 /// All checks of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,29 +31,6 @@ pub struct StabilityEntry {
     pub note: String,
     /// CPU time, s.
     pub cpu_s: Option<f64>,
-}
-
-/// Verdict on a case: whether it holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum CaseVerdict {
-    /// It does.
-    Pass,
-    /// It does not, for a known reason that does not occur in ordinary drawings; the note names it.
-    Exception,
-    /// It does not.
-    Fail,
-}
-
-impl CaseVerdict {
-    /// The word that a line of the table ends in.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Exception => "exception",
-            Self::Fail => "FAIL",
-        }
-    }
 }
 
 impl StabilityReport {

@@ -15,7 +15,7 @@ use super::damages::{common_colors, damaged};
 use super::drawings::{Drawing, Kind, picture};
 use super::elements::{Element, elements};
 use super::gallery::{BRIGHTEST, Gallery, errors};
-use super::peers::TunedPeer;
+use super::programs::TunedProgram;
 use crate::report::Damage;
 use crate::report::cases::{CaseEntry, CasesReport, Contents, OWN};
 use anatomy::Anatomy;
@@ -183,7 +183,7 @@ pub fn run(
     truths: impl IntoIterator<Item = Result<Truth>>,
     damages: &[Damage],
     ours: &[Drawer],
-    peers: &[TunedPeer],
+    peers: &[TunedProgram],
     tell: &mut dyn FnMut(Outcome<'_>) -> Result<()>,
 ) -> Result<CasesReport> {
     let mut entries = Vec::new();
@@ -273,9 +273,9 @@ impl<'a> Case<'a> {
         })
     }
 
-    fn traced(&self, peer: &TunedPeer) -> (CaseEntry, String) {
-        self.timed(peer.name(), || {
-            let svg = peer.trace(&self.picture, self.truth.colors)?.svg;
+    fn traced(&self, peer: &TunedProgram) -> (CaseEntry, String) {
+        self.timed(peer.program.name, || {
+            let svg = peer.trace(&self.picture, self.truth.colors)?;
             Ok((self.with_width(svg)?, None))
         })
     }

@@ -20,7 +20,8 @@ mod rates;
 
 pub use agreement::AgreementMap;
 
-use crate::report::stability::{CaseVerdict, StabilityEntry, StabilityReport};
+use crate::report::CaseVerdict;
+use crate::report::stability::{StabilityEntry, StabilityReport};
 use strokefit::Result;
 use strokefit::image::Image;
 use strokefit::report::Usage;

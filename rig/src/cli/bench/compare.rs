@@ -54,12 +54,7 @@ impl FromStr for Folder {
 
 impl Compare {
     /// Runs it; how many cases failed.
-    pub(super) fn run(
-        &self,
-        folder: &Path,
-        files: &mut ResultFolder,
-        verbosity: Verbosity,
-    ) -> Result<usize> {
+    pub(super) fn run(&self, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
         let programs = [Program::new(&self.old)?, Program::new(&self.new)?];
         let cases = cases(&Wanted {
             folders: self
@@ -76,7 +71,7 @@ impl Compare {
             );
         }
         let tell = |entry: &_| verbosity.detail(format_args!("{}", CompareEntry::line(entry)));
-        let report = compare::run(programs.each_ref(), &cases, folder, &tell)?;
+        let report = compare::run(programs.each_ref(), &cases, files.path(), &tell)?;
         let name = format!("compare-{}", report.programs.join("-"));
         let markdown = report.markdown();
         files.text(&format!("{name}.md"), &markdown)?;

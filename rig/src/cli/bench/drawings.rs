@@ -7,7 +7,7 @@ use crate::bench::drawings::{Drawing, Kind, Pictures};
 use crate::bench::files::{few, has_ending, named, stem};
 use crate::bench::gallery::{Gallery, PANEL_PX};
 use crate::bench::inverse::{self, Drawer, Outcome, Truth};
-use crate::bench::peers::{installed_for, missing_for_drawings};
+use crate::bench::programs::installed_for;
 use crate::lab::ResultFolder;
 use crate::report::Damage;
 use crate::report::cases::CaseEntry;
@@ -81,13 +81,14 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Draws the pictures, and writes drawings, tables, plots and the gallery; how many cases failed.
+    /// Draws the pictures, and writes drawings, tables and the gallery; how many cases failed.
     fn over(
         &self,
         truths: impl Iterator<Item = strokefit::Result<Truth>>,
         peers: Kind,
         files: &mut ResultFolder,
     ) -> Result<usize> {
+        let (peers, _) = installed_for(peers);
         let mut gallery = Gallery::default();
         let mut tell = |outcome: Outcome<'_>| {
             say(&outcome.entry.line());
@@ -99,15 +100,11 @@ impl Run<'_> {
                 svg => files.text(&outcome.entry.svg_name(), svg),
             }
         };
-        let peers = installed_for(peers);
         let report = inverse::run(truths, self.damages, &self.ours, &peers, &mut tell)?;
         let name = self.name;
         files.text(&format!("{name}.csv"), &report.table().csv())?;
         files.text(&format!("{name}.md"), &report.markdown(self.kind))?;
         files.text(&format!("{name}.json"), &json(&report)?)?;
-        for (plot, svg) in report.charts()? {
-            files.text(&format!("{name}-{plot}.svg"), &svg)?;
-        }
         files.picture(&format!("{name}.png"), &gallery.sheet()?)?;
         Ok(report.failures())
     }
@@ -145,7 +142,7 @@ impl Inverse {
                 failures += run.over(drawings.iter().flat_map(of), kind, files)?;
             }
         }
-        say_missing(&missing_for_drawings(), verbosity);
+        say_missing(&installed_for(Kind::Shapes).1, verbosity);
         Ok(failures)
     }
 
@@ -207,7 +204,7 @@ impl Robust {
             kind: CaseEntry::damage_words,
         };
         let failures = run.over(truths.into_iter().map(Ok), Kind::Shapes, files)?;
-        say_missing(&missing_for_drawings(), verbosity);
+        say_missing(&installed_for(Kind::Shapes).1, verbosity);
         Ok(failures)
     }
 

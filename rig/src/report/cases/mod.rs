@@ -1,17 +1,13 @@
 //! Findings of `strokefit-rig inverse` and `robust`: how much of a drawing, or of a clean picture, is found again in a picture of it.
 
-mod charts;
 mod summary;
 
 use serde::{Deserialize, Serialize};
-use strokefit::Result;
 use strokefit::report::SCHEMA;
 
+pub use super::OWN;
 use super::statistics::optional;
 use super::{Column, Damage, Table};
-
-/// Who makes our own drawings.
-pub const OWN: &str = "strokefit";
 
 /// Contents of a file, without a rectangle that fills the page behind everything else.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -221,14 +217,6 @@ impl CasesReport {
     /// One row per case, without columns that nothing is known of.
     pub fn table(&self) -> Table {
         Table::of(&COLUMNS, &self.entries).without_empty_columns()
-    }
-
-    /// Name and SVG of each plot; none where no artist's file is known.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Picture`](strokefit::ErrorKind::Picture) when one cannot be drawn.
-    pub fn charts(&self) -> Result<Vec<(&'static str, String)>> {
-        charts::all(&self.made())
     }
 }
 
