@@ -1,9 +1,8 @@
-//! Benchmarks of whole fits: cost against error, hard cases, growth.
+//! Benchmarks of whole fits: cost against error, what is found again, growth.
 //!
 //! | benchmark | question |
 //! | --- | --- |
 //! | [`pareto`] | how much error is left for how much time, memory, bytes and strokes; who else is there? |
-//! | [`stability`] | does every hard case give a valid drawing, and does `f32` stay close to `f64`? |
 //! | [`inverse`] | how much of a drawing is found again in its picture, in how many numbers, and how much of its damage is drawn? |
 //! | [`compare`] | what does a change of the program do to drawings of all kinds? |
 //! | [`scaling`] | how do time and memory grow with strokes, pixels and threads? |
@@ -23,4 +22,3 @@ pub mod measure;
 pub mod pareto;
 pub mod programs;
 pub mod scaling;
-pub mod stability;

@@ -33,7 +33,7 @@ pub struct Traced {
     pub cost: Cost,
 }
 
-/// What a drawing takes: of ours as the fit reports it, of others as their whole process takes it.
+/// What the process of a drawing takes; of our fits as they report it, with judging the file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize)]
 pub struct Cost {
     /// Wall time, s.

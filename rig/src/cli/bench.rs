@@ -1,4 +1,4 @@
-//! The measurements: `pareto`, `stability`, `inverse`, `robust`, `scaling` and `compare`.
+//! The measurements: `pareto`, `inverse`, `robust`, `scaling` and `compare`.
 
 mod compare;
 mod drawings;
@@ -6,14 +6,13 @@ mod drawings;
 use std::path::PathBuf;
 
 use crate::bench::programs::installed;
-use crate::bench::stability::{self, Extent};
 use crate::bench::{pareto, scaling};
 use crate::lab::ResultFolder;
 use anyhow::Result;
 use clap::Subcommand;
 use strokefit::report::json;
 
-use strokefit::cli::{Status, Verbosity, input, output};
+use strokefit::cli::{Status, Verbosity, output};
 
 use compare::Compare;
 use drawings::{Inverse, Robust};
@@ -21,7 +20,6 @@ use drawings::{Inverse, Robust};
 #[derive(Debug, Subcommand)]
 pub(super) enum Benchmark {
     Pareto(Pareto),
-    Stability(Stability),
     Inverse(Inverse),
     Robust(Robust),
     Scaling(Scaling),
@@ -54,15 +52,6 @@ pub(super) struct Pareto {
     settings: Vec<String>,
 }
 
-/// Try hard cases: degenerate strokes and pictures, precision, extreme learning rates, thin strokes
-#[derive(Debug, clap::Args)]
-pub(super) struct Stability {
-    /// Pictures to fit in addition to the hard ones
-    pictures: Vec<PathBuf>,
-    #[command(flatten)]
-    extents: Extents,
-}
-
 /// Measure how time and memory grow with strokes, pixels and threads
 #[derive(Debug, clap::Args)]
 pub(super) struct Scaling {
@@ -77,7 +66,6 @@ impl Benchmark {
     fn run(&self, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
         match self {
             Self::Pareto(pareto) => pareto.run(files, verbosity),
-            Self::Stability(stability) => stability.run(files),
             Self::Inverse(inverse) => inverse.run(files, verbosity),
             Self::Robust(robust) => robust.run(files, verbosity),
             Self::Scaling(scaling) => scaling.run(files),
@@ -96,26 +84,6 @@ impl Pareto {
         let (peers, missing) = installed();
         let report = pareto::run(files, &self.pictures, &settings, is_short, &peers, &mut say)?;
         say_missing(&missing, verbosity);
-        Ok(report.failures())
-    }
-}
-
-impl Stability {
-    fn run(&self, files: &mut ResultFolder) -> Result<usize> {
-        let extent = if self.extents.short {
-            Extent::Short
-        } else {
-            Extent::Full
-        };
-        let named = |path: &PathBuf| Ok((input::name(path), input::picture(path)?));
-        let pictures: Vec<_> = self.pictures.iter().map(named).collect::<Result<_>>()?;
-        let (report, map) = stability::run(extent, &pictures, &mut |entry| say(&entry.line()))?;
-        let table = report.table();
-        files.text("stability.csv", &table.csv())?;
-        files.text("stability.md", &report.markdown())?;
-        files.text("stability.json", &json(&report)?)?;
-        files.text("agreement.csv", &map.table().csv())?;
-        files.picture("agreement.png", &map.picture()?)?;
         Ok(report.failures())
     }
 }
@@ -145,7 +113,6 @@ fn say(line: &str) {
 
 pub(super) fn run(benchmark: &Benchmark, verbosity: Verbosity) -> Result<Status> {
     let (Benchmark::Pareto(Pareto { extents, .. })
-    | Benchmark::Stability(Stability { extents, .. })
     | Benchmark::Inverse(Inverse { extents, .. })
     | Benchmark::Robust(Robust { extents, .. })
     | Benchmark::Scaling(Scaling { extents, .. })

@@ -25,7 +25,7 @@ pub fn main(args: Vec<OsString>) -> u8 {
     status.leave()
 }
 
-/// Measures speed against error, hard cases, and growth with size; repeats the article's experiments
+/// Measures cost against error, what is found again, and growth with size; repeats the article's experiments
 ///
 /// Each case of a measurement prints a line to standard output that ends with its verdict. Tables, plots and pages go to
 /// the folder. The exit status is 1 if a case fails.
@@ -36,7 +36,6 @@ pub fn main(args: Vec<OsString>) -> u8 {
     after_help = "Examples:
   strokefit-rig pareto photo.png -o out --short
   strokefit-rig pareto photo.png -o out --settings '--time 0.5' --settings '--time 1'
-  strokefit-rig stability -o out --short
   strokefit-rig inverse icons/*.svg -o out
   strokefit-rig inverse emoji -o out --short
   strokefit-rig robust emoji -o out --short

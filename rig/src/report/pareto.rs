@@ -36,10 +36,9 @@ const MIN_ROOM: usize = 8;
 const TICK_S: f64 = 0.01;
 
 /// Note on the meaning of the figures.
-const NOTE: &str = "Fidelity compares resvg's render of the file with the picture, over 8-bit RGB on white. Times are those of fits \
-                    without judging their files, and of whole processes of other programs. CPU time is the sum over all \
-                    threads, in hundredths of a second. Memory is the most that the process held; other programs are sampled \
-                    every 2 ms.";
+const NOTE: &str = "Fidelity compares resvg's render of the file with the picture, over 8-bit RGB on white. CPU time is the sum over all \
+                    threads of the process, of ours with judging the file, in hundredths of a second. Memory is the most that the \
+                    process held; that of other programs is sampled every 2 ms.";
 
 /// All drawings of a run, and what follows from them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -302,7 +301,6 @@ fn scatter(picture: &str, here: &[&ParetoEntry], [(x, cost), (y, gain)]: [Axis; 
         title: format!("{picture}: {x} against {y}"),
         axes: [x.into(), y.into()],
         logarithmic_x: true,
-        legend_beside: true,
         ..Chart::default()
     };
     for name in distinct(here.iter().map(|e| line(e))) {

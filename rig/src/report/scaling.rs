@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use strokefit::report::SCHEMA;
 
 use super::statistics::optional;
-use super::{CaseVerdict, Column, Table};
+use super::{Column, Table};
 use strokefit::math;
 
 /// Largest exponent by which CPU time and memory may grow with strokes or pixels: linear growth, plus noise.
@@ -16,6 +16,30 @@ pub const LARGEST: [f64; 2] = [24e6, 20_000.0];
 
 /// Most memory that the largest picture may take, bytes.
 const MAX_BYTES: u64 = 4 << 30;
+
+/// Verdict on a series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CaseVerdict {
+    /// It grows no faster than it may.
+    Pass,
+    /// It does, or was not measured.
+    Fail,
+}
+
+impl CaseVerdict {
+    fn of(holds: bool) -> Self {
+        if holds { Self::Pass } else { Self::Fail }
+    }
+
+    /// The word that a line ends in.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "FAIL",
+        }
+    }
+}
 
 /// All series of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -152,11 +176,7 @@ impl SeriesEntry {
             memory,
             points,
             failures: Vec::new(),
-            verdict: if holds {
-                CaseVerdict::Pass
-            } else {
-                CaseVerdict::Fail
-            },
+            verdict: CaseVerdict::of(holds),
         }
     }
 
@@ -306,10 +326,7 @@ fn significant(seconds: f64) -> String {
 }
 
 fn largest_verdict(point: &PointEntry) -> CaseVerdict {
-    match point.peak_rss_bytes {
-        Some(bytes) if bytes > MAX_BYTES => CaseVerdict::Fail,
-        _ => CaseVerdict::Pass,
-    }
+    CaseVerdict::of(point.peak_rss_bytes.is_none_or(|bytes| bytes <= MAX_BYTES))
 }
 
 #[cfg(test)]

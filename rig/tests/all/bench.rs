@@ -181,30 +181,6 @@ fn a_peer_that_fails_is_a_case_that_fails() {
 }
 
 #[test]
-fn stability_holds_and_writes_its_table() {
-    let place = Place::new();
-    let output = bench(&place, &["stability", "-o", "out", "--short"]);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let lines = lines(&output);
-    assert!(lines.len() > 35, "{lines:?}");
-    for line in &lines {
-        assert!(
-            line.ends_with(": pass") || line.ends_with("): exception"),
-            "{line}"
-        );
-    }
-    for name in [
-        "stability.csv",
-        "stability.json",
-        "stability.md",
-        "agreement.csv",
-        "agreement.png",
-    ] {
-        assert!(place.path("out").join(name).exists(), "{name}");
-    }
-}
-
-#[test]
 fn drawings_are_found_again_stroke_by_stroke() {
     let place = Place::new();
     let icon = |name: &str| sample(&format!("icons/{name}.svg"));

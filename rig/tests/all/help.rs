@@ -18,7 +18,7 @@ fn what_is_wrong_is_said_in_a_line_with_a_hint() {
     let place = Place::new();
     for (words, hint) in [
         (&["paretto"][..], "'pareto'"),
-        (&["stability", "-o", "out", "--shrot"], "'--short'"),
+        (&["scaling", "-o", "out", "--shrot"], "'--short'"),
         (
             &["scaling"],
             "strokefit-rig scaling --help lists the options",

@@ -21,9 +21,11 @@ mod compare;
 #[path = "../../../tests/all/dependencies.rs"]
 mod dependencies;
 mod golden;
+mod hard;
 mod help;
 #[path = "../../../tests/all/imports.rs"]
 mod imports;
+mod kinks;
 mod lab_cli;
 mod lab_tables;
 mod robust;

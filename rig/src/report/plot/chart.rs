@@ -21,7 +21,7 @@ const SERIES: [RGBColor; 9] = [
     RGBColor(110, 60, 20),
 ];
 
-/// Width of a legend beside a chart, px, and its first line.
+/// Width of the legend beside a chart, px, and its first line.
 const LEGEND_WIDTH: i32 = 172;
 const LEGEND_TOP: i32 = 48;
 
@@ -40,8 +40,6 @@ pub struct Chart {
     pub series: Vec<(String, Vec<[f64; 2]>)>,
     /// Points in the colour of the line of the same index.
     pub marks: Vec<Vec<[f64; 2]>>,
-    /// True if the legend is beside the chart, because lines may be anywhere.
-    pub legend_beside: bool,
 }
 
 impl Chart {
@@ -72,7 +70,8 @@ impl Chart {
         let all = || series.iter().chain(&marks).flatten();
         let margin = if marks.is_empty() { 0.0 } else { MARGIN };
         let [x, y] = [0, 1].map(|k| widened(span(all().map(|p| p[k])), margin));
-        let (area, beside) = self.areas(root);
+        let width = root.dim_in_pixel().0 as i32;
+        let (area, beside) = root.split_horizontally(width - LEGEND_WIDTH);
         let mut chart = ChartBuilder::on(&area)
             .caption(&self.title, (FONT, 16))
             .margin(10)
@@ -89,54 +88,18 @@ impl Chart {
             .y_label_formatter(&|v| self.label_y(*v, is_plain(y)))
             .label_style((FONT, 13))
             .draw()?;
-        let mut lines: Vec<_> = (self.series.iter().map(|(name, _)| name))
-            .zip(series.iter().zip(SERIES.iter().cycle()))
-            .collect();
-        if beside.is_some() {
-            // The first above all others; a legend within the chart is in the order of drawing.
-            lines.reverse();
-        }
-        for (name, (points, color)) in lines {
+        // The first above all others.
+        let lines: Vec<_> = series.iter().zip(SERIES.iter().cycle()).collect();
+        for (points, color) in lines.into_iter().rev() {
             let points = points.iter().map(|&[x, y]| (x, y));
-            chart
-                .draw_series(LineSeries::new(points, color.stroke_width(2)))?
-                .label(name)
-                .legend(move |(x, y)| {
-                    PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3))
-                });
+            chart.draw_series(LineSeries::new(points, color.stroke_width(2)))?;
         }
-        let mut discs: Vec<_> = marks.iter().zip(SERIES.iter().cycle()).collect();
-        discs.reverse();
-        for (points, color) in discs {
-            let discs = points
-                .iter()
-                .map(|&[x, y]| Circle::new((x, y), 3, color.filled()));
-            chart.draw_series(discs)?;
+        let discs: Vec<_> = marks.iter().zip(SERIES.iter().cycle()).collect();
+        for (points, color) in discs.into_iter().rev() {
+            let disc = |&[x, y]: &[f64; 2]| Circle::new((x, y), 3, color.filled());
+            chart.draw_series(points.iter().map(disc))?;
         }
-        if let Some(beside) = beside {
-            return self.draw_legend(&beside);
-        }
-        chart
-            .configure_series_labels()
-            .position(self.free_corner())
-            .background_style(WHITE.mix(0.85))
-            .border_style(BLACK.mix(0.3))
-            .label_font((FONT, 13))
-            .draw()?;
-        Ok(())
-    }
-
-    /// Where the chart is drawn, and its legend, if that is beside it.
-    fn areas<B: DrawingBackend>(
-        &self,
-        root: &DrawingArea<B, Shift>,
-    ) -> (DrawingArea<B, Shift>, Option<DrawingArea<B, Shift>>) {
-        if !self.legend_beside {
-            return (root.clone(), None);
-        }
-        let width = root.dim_in_pixel().0 as i32;
-        let (area, beside) = root.split_horizontally(width - LEGEND_WIDTH);
-        (area, Some(beside))
+        self.draw_legend(&beside)
     }
 
     fn draw_legend<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn
@@ -150,17 +113,6 @@ impl Chart {
             area.draw(&Text::new(name.as_str(), (24, y - 6), (FONT, 13)))?;
         }
         Ok(())
-    }
-
-    /// Where the lines are unlikely to be.
-    fn free_corner(&self) -> SeriesLabelPosition {
-        if self.logarithmic {
-            SeriesLabelPosition::UpperRight // the corner that falling losses leave free
-        } else if self.logarithmic_x {
-            SeriesLabelPosition::UpperLeft // above a front there is nothing
-        } else {
-            SeriesLabelPosition::MiddleRight
-        }
     }
 
     /// Points as they are drawn: on a logarithmic axis as logarithms.

@@ -13,7 +13,7 @@ use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
 pub use chart::Chart;
-pub use sheet::{Panel, Path, Sheet, captioned, framed};
+pub use sheet::{Panel, Path, Sheet, framed};
 
 use super::picture;
 use strokefit::image::Image;

@@ -152,24 +152,6 @@ fn blit(
     }
 }
 
-/// The picture with lines of text beneath it, at least `min_width` px wide.
-///
-/// # Errors
-/// [`ErrorKind::Picture`] when there is no memory for it.
-pub fn captioned(image: &Image, lines: &[String], min_width: usize) -> Result<Image> {
-    let (width, height) = (image.width().max(min_width), image.height());
-    let whole = Image::filled(width, height + lines.len() * LINE, [1.0; 3])?;
-    let mut planes = whole.planes().clone();
-    blit(&mut planes, width, (0, 0), image, 1);
-    let whole = Image::new(width, whole.height(), planes)?;
-    draw(whole, |root| {
-        for (i, line) in lines.iter().enumerate() {
-            label(root, line, (4, height + i * LINE + 3), 13)?;
-        }
-        Ok(())
-    })
-}
-
 /// The picture in the middle of a white square, cut to its size.
 ///
 /// # Errors
@@ -262,14 +244,6 @@ mod tests {
         assert!(red.clone().any(|(&r, &g)| r > 0.9 && g < 0.1), "no arrow");
     }
 
-    #[test]
-    fn captions_are_written_beneath() {
-        let white = Image::filled(60, 30, [1.0; 3]).unwrap();
-        let image = captioned(&white, &["step 1".into()], 90).unwrap();
-        assert_eq!((image.width(), image.height()), (90, 50));
-        assert!(is_dark(&image, 0..60, 30..50));
-    }
-
     /// The letters of the captions of animations, 8 px each.
     #[test]
     fn letters_of_captions_are_those_of_the_font() {
@@ -300,7 +274,13 @@ mod tests {
             };
             let frame = film.frames(&scene).last().unwrap().unwrap();
             let picture = frame.cropped(12, 9).unwrap();
-            let expected = captioned(&picture, &[scene.counted()], frame.width());
+            // The same words under the picture.
+            let blank = Image::filled(frame.width(), 9 + LINE, [1.0; 3]).unwrap();
+            let mut planes = blank.planes().clone();
+            blit(&mut planes, frame.width(), (0, 0), &picture, 1);
+            let expected = Image::new(frame.width(), 9 + LINE, planes).unwrap();
+            let words = scene.counted();
+            let expected = draw(expected, |root| label(root, &words, (4, 9 + 3), 13));
             // Where letters touch, one rounds down what the other rounds to the nearest.
             let (drawn, expected) = (frame.to_rgb8(), expected.unwrap().to_rgb8());
             let mut levels = drawn.iter().zip(&expected);

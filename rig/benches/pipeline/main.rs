@@ -6,23 +6,34 @@
 //!
 //! Strokes are random where a step takes strokes, so that a figure moves when the step does and
 //! not when the recipe of the fit is tuned. All cores are used, as in a fit.
+//!
+//! The steps `render/` are measured on random drawings of strokes of one size and on finished ones, on 1, 2, … threads, and the last
+//! drawing at each SIMD level. Their throughput is in *pairs*: a stroke and a pixel of the picture where its coverage is above 0,
+//! hidden or not; a pixel that several segments of one path cover is one pair. A *lane* is what the renderer does look at: blocks
+//! visited × 16.
 #![allow(clippy::unwrap_used, reason = "a benchmark that fails may stop")]
+#![allow(clippy::print_stdout, reason = "the work in drawings is told")]
+
+mod count;
 
 use std::fs;
 use std::hint::black_box;
 use std::time::Duration;
 
-use criterion::measurement::WallTime;
-use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput};
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput};
+use fearless_simd::Level;
 
-use rig::bench::measure::{StrokeSize, go_to_root};
-use strokefit::coverage::Coverage;
+use count::{Count, LANES};
+use rig::bench::measure::{DEPTH, EDGE, StrokeSize, go_to_root};
+use rig::bench::scaling::thread_counts;
 use strokefit::fit::{Budget, Config, Fitter, Objective, Simd};
 use strokefit::image::{Image, Limits};
 use strokefit::loss::Loss;
 use strokefit::metrics;
 use strokefit::optim::{Adam, AdamParams};
-use strokefit::render::{Backdrop, Canvas, Gradients, PARAMS, Renderer, Softness, Strokes};
+use strokefit::render::{
+    Backdrop, Canvas, Gradients, PARAMS, Renderer, StrokeRef, Strokes, flattened,
+};
 use strokefit::scene::{Scene, Stage};
 use strokefit::seed::{Pyramid, Residual, Wanted, propose};
 use strokefit::svg::{self, WriteOptions};
@@ -38,12 +49,6 @@ const STROKES: usize = 5000;
 
 const BACKDROP: [f32; 3] = [0.5; 3];
 
-/// The edge that an antialiasing rasteriser draws.
-const EDGE: Softness = Softness {
-    coverage: Coverage::Smoothstep,
-    width: 1.0,
-};
-
 const fn strokes_of(radius_px: f32, length_px: f32) -> StrokeSize {
     StrokeSize {
         radius_px,
@@ -54,14 +59,13 @@ const fn strokes_of(radius_px: f32, length_px: f32) -> StrokeSize {
 
 const THIN: StrokeSize = strokes_of(0.9, 5.0);
 const MEDIUM: StrokeSize = strokes_of(2.5, 10.0);
-const LARGE: StrokeSize = strokes_of(14.0, 50.0);
-
-/// Sizes of strokes, and the number of strokes of each: about what a stage holds.
-const LOOKS: [(&str, usize, StrokeSize); 3] = [
-    ("thin", 5000, THIN),
-    ("medium", 2000, MEDIUM),
-    ("large", 200, LARGE),
+/// Sizes of random strokes: radius and length, px; each opaque and half opaque.
+const SIZES: [(&str, f32, f32); 3] = [
+    ("thin", 0.7, 12.0),
+    ("medium", 3.0, 14.0),
+    ("large", 12.0, 40.0),
 ];
+const OPACITIES: [f32; 2] = [1.0, 0.5];
 
 fn main() {
     go_to_root().unwrap();
@@ -124,47 +128,122 @@ fn seed(criterion: &mut Criterion, image: &Image) {
 }
 
 fn render(criterion: &mut Criterion, image: &Image) {
-    for (name, count, look) in &LOOKS {
-        let target = Canvas::from_image(image);
-        let strokes = look.strokes(target.grid(), *count);
-        let mut group = criterion.benchmark_group("render");
-        passes(&mut group, name, &strokes, &target);
-        group.finish();
+    let target = Canvas::from_image(image);
+    let grid = target.grid();
+    let mut drawings = Vec::new();
+    for (name, radius_px, length_px) in SIZES {
+        for opacity in OPACITIES {
+            let size = StrokeSize {
+                radius_px,
+                length_px,
+                opacity,
+            };
+            let count = DEPTH * pixels(image) as f32 / size.area_px();
+            let strokes = size.strokes(grid, count as usize);
+            drawings.push((format!("{name} {opacity:.1}"), strokes, BACKDROP));
+        }
+    }
+    drawings.push(settled("settled 2", Some(2), image));
+    drawings.push(settled("settled", None, image));
+    let best = Simd::Auto.level().unwrap();
+    for (name, strokes, backdrop) in &drawings {
+        for threads in thread_counts() {
+            let name = format!("{name}, {threads} threads");
+            passes(
+                criterion,
+                &name,
+                strokes,
+                *backdrop,
+                &target,
+                (best, threads),
+            );
+        }
+    }
+    let (_, strokes, backdrop) = drawings.last().unwrap();
+    for simd in Simd::available() {
+        let name = format!("settled, {simd}");
+        let level = simd.level().unwrap();
+        passes(criterion, &name, strokes, *backdrop, &target, (level, 1));
     }
 }
 
-/// Forward and both backward passes of `strokes`; the throughput is in blocks of 16 px.
+/// A fit of the picture, as it is when finished, of strokes of at most `points` points. Curves are polylines, as the renderer
+/// draws them.
+fn settled(name: &str, points: Option<usize>, image: &Image) -> (String, Strokes, [f32; 3]) {
+    let is_test = std::env::args().any(|arg| arg == "--test");
+    let config = Config {
+        budget: Budget {
+            strokes: Some(if is_test { 50 } else { STROKES }),
+            ..Budget::default()
+        },
+        points,
+        polish: !is_test,
+        ..Config::default()
+    };
+    let scene = Fitter::new(config).fit(image).unwrap().scene;
+    let paths: Strokes = scene.marks().collect();
+    let mut strokes = Strokes::new();
+    for path in paths.iter() {
+        let points = flattened(path);
+        strokes.push(StrokeRef {
+            points: &points,
+            off: &vec![false; points.len()],
+            closed: false,
+            rings: &[],
+            form: None,
+            paint: None,
+            style: path.style,
+        });
+    }
+    (name.into(), strokes, scene.background.unwrap_or([1.0; 3]))
+}
+
+/// Forward and both backward passes of `strokes` at a SIMD level and on so many threads.
 fn passes(
-    group: &mut BenchmarkGroup<'_, WallTime>,
+    criterion: &mut Criterion,
     name: &str,
     strokes: &Strokes,
+    backdrop: [f32; 3],
     target: &Canvas,
+    (level, threads): (Level, usize),
 ) {
-    let mut renderer = Renderer::new(target.grid(), Simd::Auto.level().unwrap());
-    let backdrop = Backdrop::Color(BACKDROP);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let pool = pool.build().unwrap();
+    let mut renderer = pool.install(|| Renderer::new(target.grid(), level));
+    let backdrop = Backdrop::Color(backdrop);
     let objective = Objective::new(Loss::L2, target);
     let mut gradients = Gradients::default();
     renderer.backward(strokes, EDGE, backdrop, &objective, &mut gradients);
-    group.throughput(Throughput::Elements(gradients.blocks));
+    let count = Count::of(target.grid(), strokes);
+    // The work counted is the work done, up to rounding at the borders of blocks.
+    let (done, counted) = (gradients.blocks as f64, count.blocks() as f64);
+    assert!(
+        (done / counted - 1.0).abs() < 0.01,
+        "{name}: {done} blocks, {counted} counted"
+    );
+    let lanes = (count.blocks() * LANES) as f64 / count.pairs as f64;
+    println!(
+        "{name}: {} strokes, {} pairs, {lanes:.2} lanes each",
+        strokes.len(),
+        count.pairs
+    );
 
+    let mut group = criterion.benchmark_group("render");
+    group.throughput(Throughput::Elements(count.pairs));
     let mut canvas = Canvas::flat(target.grid(), BACKDROP);
     group.bench_function(BenchmarkId::new("forward", name), |b| {
-        b.iter(|| renderer.forward(black_box(strokes), EDGE, backdrop, &mut canvas));
+        let strokes = black_box(strokes);
+        let mut pass = || renderer.forward(strokes, EDGE, backdrop, &mut canvas);
+        b.iter(|| pool.install(&mut pass));
     });
     group.bench_function(BenchmarkId::new("backward", name), |b| {
-        b.iter(|| {
-            renderer.backward(
-                black_box(strokes),
-                EDGE,
-                backdrop,
-                &objective,
-                &mut gradients,
-            );
-        });
+        let strokes = black_box(strokes);
+        let mut pass = || renderer.backward(strokes, EDGE, backdrop, &objective, &mut gradients);
+        b.iter(|| pool.install(&mut pass));
     });
     group.bench_function(BenchmarkId::new("backward_with_worth", name), |b| {
-        b.iter(|| {
-            let strokes = black_box(strokes);
+        let strokes = black_box(strokes);
+        let mut pass = || {
             renderer.backward_with_contributions(
                 strokes,
                 EDGE,
@@ -172,8 +251,10 @@ fn passes(
                 &objective,
                 &mut gradients,
             );
-        });
+        };
+        b.iter(|| pool.install(&mut pass));
     });
+    group.finish();
 }
 
 fn optim(criterion: &mut Criterion, image: &Image) {

@@ -79,10 +79,6 @@ impl Count {
     pub(crate) fn blocks(&self) -> u64 {
         self.edge + self.core
     }
-
-    pub(crate) fn lanes(&self) -> u64 {
-        self.blocks() * LANES
-    }
 }
 
 /// A block and how much is seen through what is in front of it.
