@@ -14,13 +14,12 @@ const FIXED: [f64; 2] = [1e6, 5000.0];
 /// Values in a short run.
 const FIXED_SHORT: [f64; 2] = [0.1e6, 1000.0];
 
-/// A task and its options: a draft without polish, as quick as there is; a draft; the default fit.
-const STAGES: (&str, &str) = ("stages", "--preset draft --no-polish");
-const DRAFT: (&str, &str) = ("draft", "--preset draft");
-const FIT: (&str, &str) = ("fit", "--preset balanced");
+/// Tasks and their options: a draft without polish, as quick as there is, and the default fit.
+const STAGES: [&str; 2] = ["stages", "--preset draft --no-polish"];
+const FIT: [&str; 2] = ["fit", "--preset balanced"];
 
-/// What grows along a series, from small to large; its task.
-type Series = ((&'static str, &'static str), &'static str, Vec<f64>);
+/// A task, what grows, and its values from small to large.
+type Series = ([&'static str; 2], &'static str, Vec<f64>);
 
 fn series(short: bool) -> Vec<Series> {
     let threads = || thread_counts().iter().map(|&n| n as f64).collect();
@@ -65,17 +64,16 @@ pub fn run(
     let mut report = ScalingReport::default();
     let fixed = if short { FIXED_SHORT } else { FIXED };
     let all = thread_counts().pop().unwrap_or(1) as f64;
-    for ((task, options), axis, values) in series(short) {
+    for ([task, options], axis, values) in series(short) {
         let (mut measured, mut points, mut failures) = (Vec::new(), Vec::new(), Vec::new());
         for &value in &values {
             let along = |name, fixed| if axis == name { value } else { fixed };
-            let pixels = along("pixels", fixed[0]);
-            let strokes = along("strokes", fixed[1]);
-            match point(
-                picture.as_ref(),
-                options,
-                [pixels, strokes, along("threads", all)],
-            ) {
+            let size = [
+                along("pixels", fixed[0]),
+                along("strokes", fixed[1]),
+                along("threads", all),
+            ];
+            match point(picture.as_ref(), options, size) {
                 Ok(point) => {
                     measured.push(value);
                     points.push(point);
@@ -89,7 +87,7 @@ pub fn run(
     }
     if !short {
         let [pixels, strokes] = LARGEST;
-        match point(picture.as_ref(), DRAFT.1, [pixels, strokes, all]) {
+        match point(picture.as_ref(), "--preset draft", [pixels, strokes, all]) {
             Ok(point) => report.largest = Some(point),
             Err(error) => report.largest_failure = Some(error.to_string()),
         }

@@ -36,7 +36,7 @@ struct Extents {
     short: bool,
 }
 
-/// Measure time, memory, bytes and strokes against error, for fits, for the article's recipe, and for other
+/// Measure time, memory and bytes against error, for fits, for the article's recipe, and for other
 /// programs that are installed (vtracer, primitive, potrace, Inkscape)
 ///
 /// Each result is saved at once. A case whose result is already in the folder is not measured again.

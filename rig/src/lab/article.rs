@@ -175,7 +175,7 @@ impl Reproduction {
     /// Starts from `drawing` towards `target`, which is as large.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`](strokefit::ErrorKind::Config) when `execution` asks for what this machine
+    /// [`ErrorKind::Config`] when `execution` asks for what this machine
     /// does not have.
     pub fn new(target: &Image, drawing: Capsules, execution: Execution) -> Result<Self> {
         let level = execution.simd.require()?;

@@ -41,7 +41,7 @@ pub trait Problem<T: Real> {
 pub enum Method {
     /// Adam.
     Adam(f64),
-    /// AdamW with a decay of [`DECAY`].
+    /// AdamW with a decay of 0.01.
     AdamW(f64),
     /// RMSprop.
     RmsProp(f64),
