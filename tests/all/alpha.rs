@@ -1,10 +1,9 @@
 //! Transparency is fitted: no background is drawn, and a drawing looks right on whatever it is laid.
 
-use crate::support::drafts::draft;
-use crate::support::fits::{drawn, sample};
+use crate::support::{draft, drawn, rendered, sample};
 use strokefit::fit::{Background, Config, Fit};
 use strokefit::image::Image;
-use strokefit::verify::{self, Size};
+use strokefit::verify::{self};
 
 fn text(fit: &Fit) -> String {
     fit.svg()
@@ -45,7 +44,7 @@ fn a_clear_picture_has_no_ground_and_the_same_alpha() {
     let text = text(&drawn(&picture, &draft(150)));
     // That of a ground begins with its width, that of a shape with its place.
     assert!(!text.contains("<rect width"));
-    let seen = verify::render(&text, Size::Scale(1.0), None).unwrap();
+    let seen = rendered(&text);
     let pairs = seen.alpha().unwrap().iter().zip(picture.alpha().unwrap());
     let error: f32 = pairs.map(|(a, b)| (a - b).abs()).sum();
     let mean = error / picture.alpha().unwrap().len() as f32;
@@ -55,7 +54,7 @@ fn a_clear_picture_has_no_ground_and_the_same_alpha() {
 #[test]
 fn glass_is_drawn_as_glass() {
     let fit = drawn(&glass(), &draft(40));
-    let seen = verify::render(&text(&fit), Size::Scale(1.0), None).unwrap();
+    let seen = rendered(&text(&fit));
     let at = |x: usize, y: usize| y * 48 + x;
     let alpha = seen.alpha().unwrap();
     assert!(
@@ -91,7 +90,7 @@ fn translucent_shapes_are_elements() {
         let svg = format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="240" height="240">{elements}</svg>"#
         );
-        let picture = verify::render(&svg, Size::Scale(1.0), None).unwrap();
+        let picture = rendered(&svg);
         let fit = drawn(&picture, &Config::default());
         let areas = fit.scene.areas();
         let opacities: Vec<f32> = areas.map(|area| area.opacity).collect();

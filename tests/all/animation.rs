@@ -1,11 +1,9 @@
 //! Animations and pictures beside the SVG, and of files that are there already.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::BufReader;
 
-use crate::support::place::Place;
-use crate::support::refusal::assert_refused;
-use crate::support::repository::committed;
+use crate::support::{Place, assert_refused, committed, rendered};
 use image::codecs::gif::GifDecoder;
 use image::codecs::png::PngDecoder;
 use image::codecs::webp::WebPDecoder;
@@ -17,21 +15,6 @@ fn with_picture() -> Place {
     let sample = image::open(committed("samples/coffee-300.png")).unwrap();
     sample.thumbnail(90, 60).save(place.path("a.png")).unwrap();
     place
-}
-
-/// Runs the program with the words of a line.
-#[track_caller]
-fn done(place: &Place, line: &str) {
-    place.done(&line.split(' ').collect::<Vec<_>>());
-}
-
-#[track_caller]
-fn refused(place: &Place, line: &str, status: i32, word: &str) {
-    assert_refused(place, &line.split(' ').collect::<Vec<_>>(), status, &[word]);
-}
-
-fn read(place: &Place, name: &str) -> Vec<u8> {
-    fs::read(place.path(name)).unwrap()
 }
 
 fn frames(place: &Place, name: &str) -> Vec<RgbaImage> {
@@ -56,8 +39,7 @@ fn rgb(frame: &RgbaImage) -> RgbImage {
 #[test]
 fn a_fit_writes_all_kinds_beside_the_svg() {
     let place = with_picture();
-    done(
-        &place,
+    place.done(
         "fit a.png --strokes 60 --frames 25 -o b.svg -o b.gif -o b.webp -o b.apng -o b.png -o b.animated.svg \
          -o f{n}.png",
     );
@@ -70,69 +52,51 @@ fn a_fit_writes_all_kinds_beside_the_svg() {
     assert!(rgb(&frames(&place, "b.apng")[2]) == whole);
     assert!(picture(&place, "f3.png") == whole && picture(&place, "f1.png") != whole);
     assert!(!place.path("f4.png").exists());
-    let animated = String::from_utf8(read(&place, "b.animated.svg")).unwrap();
+    let animated = place.text("b.animated.svg");
     assert_eq!(animated.matches("<path").count(), 60);
 }
 
 #[test]
 fn a_file_is_filmed_like_the_fit_that_wrote_it() {
     let place = with_picture();
-    done(
-        &place,
-        "fit a.png --strokes 40 -o b.svg -o b.gif -o b.animated.svg",
-    );
-    done(&place, "render b.svg -o c.gif -o c.animated.svg");
-    assert!(read(&place, "b.gif") == read(&place, "c.gif"));
-    assert!(read(&place, "b.animated.svg") == read(&place, "c.animated.svg"));
+    place.done("fit a.png --strokes 40 -o b.svg -o b.gif -o b.animated.svg");
+    place.done("render b.svg -o c.gif -o c.animated.svg");
+    assert!(place.bytes("b.gif") == place.bytes("c.gif"));
+    assert!(place.bytes("b.animated.svg") == place.bytes("c.animated.svg"));
+    // What plays ends as the picture of the file.
+    assert!(rendered(&place.text("b.svg")) == rendered(&place.text("b.animated.svg")));
 }
 
 #[test]
 fn stages_are_frames_at_any_scale_and_with_a_legend() {
     let place = with_picture();
-    done(
-        &place,
-        "fit a.png --strokes 60 --stages 4 -o b.svg --report r.json",
-    );
+    place.done("fit a.png --strokes 60 --stages 4 -o b.svg --report r.json");
     let report = place.report("r.json");
     let stages = report["stages"].as_array().unwrap().iter();
     let drawn = stages
         .filter(|stage| stage["strokes"].as_u64() > Some(0))
         .count();
-    done(
-        &place,
-        "render b.svg -o c.apng --frames stage --scale 3 --legend",
-    );
+    place.done("render b.svg -o c.apng --frames stage --scale 3 --legend");
     let frames = frames(&place, "c.apng");
     assert_eq!(frames.len(), drawn);
     assert!(frames[0].width() == 270 && frames[0].height() > 180);
 }
 
 #[test]
-fn the_animated_file_is_drawn_like_the_other() {
-    let place = with_picture();
-    done(&place, "fit a.png --strokes 40 -o b.svg -o b.animated.svg");
-    done(&place, "render b.svg -o b.png");
-    done(&place, "render b.animated.svg -o c.png");
-    assert!(read(&place, "b.png") == read(&place, "c.png"));
-}
-
-#[test]
 fn outputs_that_make_no_sense_are_refused() {
     let place = with_picture();
-    refused(
-        &place,
-        "fit a.png -o b.jpg",
-        2,
-        "b.jpg: strokefit does not write .jpg files",
-    );
-    refused(&place, "fit a.png -o b.gif", 2, "out.svg");
-    refused(&place, "fit a.png -o b.svg -o c.svg", 2, "c.svg");
-    refused(&place, "fit a.png -o b.svg -o b.gif -o b.gif", 2, "b.gif");
-    refused(&place, "fit a.png -o b.svg -o a.png", 2, "a.png");
-    refused(&place, "fit a.png -o b.svg -o a.png/b.gif", 1, "is a file");
-    refused(&place, "fit a.png -o b.svg --legend", 2, "--legend");
-    refused(&place, "fit a.png -o b.svg -o b.gif --frames 0", 2, "stage");
-    assert!(!place.path("b.svg").exists());
+    for (outputs, status, word) in [
+        ("b.jpg", 2, "b.jpg: strokefit does not write .jpg files"),
+        ("b.gif", 2, "out.svg"),
+        ("b.svg -o c.svg", 2, "c.svg"),
+        ("b.svg -o b.gif -o b.gif", 2, "b.gif"),
+        ("b.svg -o ./a.png", 2, "overwritten"),
+        ("b.svg -o a.png/b.gif", 1, "is a file"),
+        ("b.svg --legend", 2, "--legend"),
+        ("b.svg -o b.gif --frames 0", 2, "stage"),
+    ] {
+        assert_refused(&place, &format!("fit a.png -o {outputs}"), status, &[word]);
+    }
 }
 
 #[test]
@@ -141,7 +105,7 @@ fn foreign_files_are_no_film() {
     let svg =
         r#"<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><circle r="1"/></svg>"#;
     place.file("b.svg", svg);
-    refused(&place, "render b.svg -o b.gif", 1, "b.svg");
-    refused(&place, "render b.svg -o c.svg", 2, "c.svg");
-    done(&place, "render b.svg -o b.png");
+    assert_refused(&place, "render b.svg -o b.gif", 1, &["b.svg"]);
+    assert_refused(&place, "render b.svg -o c.svg", 2, &["c.svg"]);
+    place.done("render b.svg -o b.png");
 }

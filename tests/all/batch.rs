@@ -1,18 +1,12 @@
 //! Several pictures at once: names, tables, failures, events.
 
 use std::fs;
-use std::process::Output;
 
-use crate::support::output::stderr;
-use crate::support::place::{Place, STROKEFIT};
-use crate::support::refusal::assert_refused;
+use serde_json::{Value, json};
+
+use crate::support::{Place, STROKEFIT, assert_refused, assert_says, stderr};
 
 const QUICK: &str = "--strokes 12 --preset draft";
-
-/// Runs a quick fit by the words of a line.
-fn fit(place: &Place, words: &str) -> Output {
-    place.run(&format!("fit {words} {QUICK}"))
-}
 
 #[test]
 fn each_picture_has_its_files_and_its_row() {
@@ -21,26 +15,23 @@ fn each_picture_has_its_files_and_its_row() {
     place.picture("b c.png", 30, 20);
     fs::create_dir(place.path("out")).unwrap();
     // A name with a space is no words of a line.
-    let words = format!("-o out/{{stem}}.svg --report {{stem}}.json {QUICK}");
     let mut args = vec!["fit", "a.png", "b c.png"];
+    let words = format!("-o out/{{stem}}.svg --report {{stem}}.json {QUICK}");
     args.extend(words.split(' '));
-    let output = place.done(&args);
+    let table = place.said(&args, 0);
     assert_eq!(
         place.names(),
         ["a.json", "a.png", "b c.json", "b c.png", "out"]
     );
-    let table = stderr(&output);
     let lines: Vec<_> = table.lines().collect();
     assert_eq!(lines.len(), 4, "{table}");
     for name in ["a", "b c"] {
         let record = place.report(&format!("{name}.json"));
         assert_eq!(record["input"]["path"], format!("{name}.png"));
-        let bytes = fs::metadata(place.path(&format!("out/{name}.svg")))
-            .unwrap()
-            .len();
+        let bytes = place.bytes(&format!("out/{name}.svg")).len();
         assert_eq!(record["svg_bytes"], bytes);
-        let row = lines
-            .iter()
+        let mut rows = lines.iter();
+        let row = rows
             .find(|line| line.starts_with(&format!("{name}.png")))
             .unwrap();
         assert!(row.contains(&format!(" {bytes} ")), "{table}");
@@ -53,10 +44,10 @@ fn a_picture_alone_and_among_others_gives_the_same_bytes() {
     let place = Place::new();
     place.picture("a.png", 20, 30);
     place.picture("b.png", 30, 20);
-    fit(&place, "a.png b.png -o {stem}.svg");
-    fit(&place, "b.png -o alone.svg");
-    let read = |name: &str| fs::read(place.path(name)).unwrap();
-    assert!(read("b.svg") == read("alone.svg"));
+    for words in ["a.png b.png -o {stem}.svg", "b.png -o alone.svg"] {
+        place.done(&format!("fit {words} {QUICK}"));
+    }
+    assert!(place.bytes("b.svg") == place.bytes("alone.svg"));
 }
 
 #[test]
@@ -64,27 +55,22 @@ fn a_failure_does_not_stop_the_others_and_the_status_is_the_worst() {
     let place = Place::new();
     place.file("bad.png", "no picture");
     place.picture("good.png", 20, 30);
-    let output = fit(&place, "bad.png gone.png good.png -o {stem}.svg");
-    assert_eq!(output.status.code(), Some(1));
+    let words = "bad.png gone.png good.png -o {stem}.svg";
+    let said = place.said(&format!("fit {words} {QUICK}"), 1);
     assert_eq!(place.names(), ["bad.png", "good.png", "good.svg"]);
-    let said = stderr(&output);
-    for words in [
-        "error: bad.png: not a picture",
-        "error: gone.png: no such file",
-        "1 drawn, 2 failed",
-    ] {
-        assert!(said.contains(words), "{said}");
-    }
-    let output = fit(&place, "good.png bad.png -o {stem}.svg --psnr 99");
-    assert_eq!(output.status.code(), Some(1));
-    place.picture("other.png", 20, 31);
-    let output = fit(&place, "good.png other.png -o {stem}.svg --psnr 99");
-    assert_eq!(output.status.code(), Some(3));
-    assert!(
-        stderr(&output).contains("good.svg: target not reached"),
-        "{}",
-        stderr(&output)
+    assert_says(
+        &said,
+        &[
+            "error: bad.png: not a picture",
+            "error: gone.png: no such file",
+            "1 drawn, 2 failed",
+        ],
     );
+    place.picture("other.png", 20, 31);
+    let fit = |pictures: &str| format!("fit {pictures} -o {{stem}}.svg --psnr 99 {QUICK}");
+    place.said(&fit("good.png bad.png"), 1);
+    let said = place.said(&fit("good.png other.png"), 3);
+    assert_says(&said, &["good.svg: target not reached"]);
 }
 
 #[test]
@@ -129,30 +115,21 @@ fn events_tell_of_each_stage_and_end_with_the_report() {
     place.picture("a.png", 40, 30);
     place.file("bad.png", "no picture");
     let words = "a.png bad.png -o {stem}.svg --events - --report {stem}.json -q";
-    let output = fit(&place, words);
-    let text = String::from_utf8(output.stdout).unwrap();
-    let events: Vec<serde_json::Value> = text
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect();
-    let named = |name: &str| {
-        events
-            .iter()
-            .filter(|e| e["event"] == name)
-            .collect::<Vec<_>>()
+    let text = place.run(&format!("fit {words} {QUICK}")).stdout;
+    let text = String::from_utf8(text).unwrap();
+    let events = text.lines().map(|line| serde_json::from_str(line).unwrap());
+    let events: Vec<Value> = events.collect();
+    let named = |name: &str| -> Vec<&Value> {
+        let events = events.iter();
+        events.filter(|event| event["event"] == name).collect()
     };
-    assert_eq!(
-        events[0],
-        serde_json::json!({"event": "start", "path": "a.png", "width": 40, "height": 30})
-    );
+    let start = json!({"event": "start", "path": "a.png", "width": 40, "height": 30});
+    assert_eq!(events[0], start);
 
     let (record, stages) = (place.report("a.json"), named("stage"));
-    assert_eq!(
-        stages.len(),
-        record["stages"].as_array().unwrap().len(),
-        "{text}"
-    );
-    for (event, stage) in stages.iter().zip(record["stages"].as_array().unwrap()) {
+    let expected = record["stages"].as_array().unwrap();
+    assert_eq!(stages.len(), expected.len(), "{text}");
+    for (event, stage) in stages.iter().zip(expected) {
         assert_eq!(event["stage"], stage["index"]);
         assert_eq!(event["iterations"], stage["iterations"]);
     }

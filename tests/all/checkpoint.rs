@@ -4,9 +4,7 @@ use std::fs;
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::Duration;
 
-use crate::support::place::{Place, STROKEFIT};
-use crate::support::repository::committed;
-use crate::support::signal::send;
+use crate::support::{Place, STROKEFIT, committed, send};
 use strokefit::rng;
 
 const PHOTOGRAPH: &str = "samples/rocket-320.png";

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use crate::support::drafts::draft;
+use crate::support::draft;
 use strokefit::fit::{Execution, Fit, Fitter, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::rng;

@@ -1,14 +1,10 @@
 //! Options from a file, and options as a file.
 
-use std::fs;
-
-use crate::support::output::stderr;
-use crate::support::place::Place;
-use crate::support::refusal::assert_refused;
+use crate::support::{Place, assert_refused, stderr};
 
 fn draw(place: &Place, options: &str) -> String {
     place.done(&format!("fit in.png -o out.svg {options}"));
-    fs::read_to_string(place.path("out.svg")).unwrap()
+    place.text("out.svg")
 }
 
 #[test]
@@ -57,7 +53,7 @@ fn a_file_may_name_the_outputs_and_come_by_pipe() {
     place.picture("in.png", 40, 30);
     let text =
         b"output = '{stem}-drawn.svg'\nreport = '{stem}.json'\nstrokes = 8\npreset = 'draft'";
-    let output = place.pipe(&["fit", "in.png", "--config", "-"], text);
+    let output = place.pipe("fit in.png --config -", text);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(place.names(), ["in-drawn.svg", "in.json", "in.png"]);
 }
@@ -122,7 +118,7 @@ fn refining_takes_options_from_files_too() {
     );
     let refine = |name: &str, options: &str| {
         place.done(&format!("refine out.svg in.png -o {name} {options}"));
-        fs::read_to_string(place.path(name)).unwrap()
+        place.text(name)
     };
     let flags = "--strokes 15 --preset draft --freeze-base";
     assert!(refine("a.svg", flags) == refine("b.svg", "--config more.toml"));

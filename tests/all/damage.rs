@@ -1,12 +1,10 @@
 //! Damage is recognised and not drawn; what is clean is drawn as it is.
 
-use strokefit::fit::{Background, Budget, Colors, Config, Fit, Fitter};
+use crate::support::{of_psnr, picture, rendered};
+use strokefit::fit::{Background, Colors, Config, Fit, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::restore::{self, Damage};
-use strokefit::verify::{Size, render};
-
-use crate::support::fits::picture;
 
 fn drawn(picture: &Image, config: Config) -> Fit {
     Fitter::new(config).fit(picture).unwrap()
@@ -14,7 +12,7 @@ fn drawn(picture: &Image, config: Config) -> Fit {
 
 /// The file against another picture than the one that was drawn, dB.
 fn psnr_db(fit: &Fit, truth: &Image) -> f64 {
-    let file = render(&fit.svg(), Size::Scale(1.0), None).unwrap();
+    let file = rendered(&fit.svg());
     Quality::between(truth, &file).unwrap().psnr_db
 }
 
@@ -101,10 +99,7 @@ fn literally_damage_is_drawn() {
         ..Config::default()
     };
     let psnr = Config {
-        budget: Budget {
-            psnr_db: Some(28.0),
-            ..Budget::default()
-        },
+        budget: of_psnr(28.0),
         ..Config::default()
     };
     for config in [literal, psnr] {
@@ -249,7 +244,7 @@ fn ink_on_a_photographed_page_is_ink() {
     let mean = (fit.scene.len() + marks.sum::<usize>()) / 3;
     assert!(mean <= 40, "{mean} marks");
     let truth = picture("signature_truth.png");
-    let file = render(&fit.svg(), Size::Scale(1.0), None).unwrap();
+    let file = rendered(&fit.svg());
     let inked = file.alpha().unwrap().iter().map(|alpha| *alpha > 0.5);
     let [mut both, mut either, mut paper, mut stained] = [0.0; 4];
     for (is_inked, truth) in inked.zip(&truth.planes()[0]) {

@@ -1,10 +1,9 @@
 //! Small things are legible by default: labels, dashes, specks, thin borders.
 
+use crate::support::{drawn, picture, rendered};
 use strokefit::fit::{Config, Fit};
 use strokefit::image::Image;
 use strokefit::verify::{Size, render};
-
-use crate::support::fits::{drawn, picture};
 
 const WHITE: [f32; 3] = [1.0; 3];
 
@@ -74,7 +73,7 @@ fn labels_of_a_flowchart_can_be_read() {
 fn specks_on_a_clear_page_are_there() {
     let picture = picture("diff.png");
     let fit = drawn(&picture, &Config::default());
-    let file = render(&fit.svg(), Size::Scale(1.0), None).unwrap();
+    let file = rendered(&fit.svg());
     let alpha = |image: &Image| image.alpha().unwrap().to_vec();
     let (meant, got) = (alpha(&picture), alpha(&file));
     let width = picture.width();
@@ -114,7 +113,7 @@ fn specks(alpha: &[f32], width: usize) -> Vec<Vec<usize>> {
 fn borders_of_one_pixel_keep_their_contrast() {
     let picture = picture("pastel_map.png");
     let fit = drawn(&picture, &Config::default());
-    let file = render(&fit.svg(), Size::Scale(1.0), None).unwrap();
+    let file = rendered(&fit.svg());
     let (meant, got) = (grey(&picture), grey(&file));
     let (width, height) = (picture.width(), picture.height());
     let brightest = |values: &[f64], i: usize| {

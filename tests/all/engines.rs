@@ -8,14 +8,12 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use crate::support::engine::installed;
-use crate::support::output::stderr;
-use crate::support::place::{Place, STROKEFIT};
-use crate::support::repository::committed;
-use crate::support::verdicts::{entry, record};
+use crate::support::{
+    Place, STROKEFIT, committed, entry, installed, of_strokes, on_white, record, stderr,
+};
 use serde_json::Value;
 use strokefit::engines::{DrawRequest, Engine};
-use strokefit::fit::{Budget, Config, Fitter};
+use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
 use strokefit::math;
 use strokefit::metrics;
@@ -119,10 +117,7 @@ fn fits() -> &'static [Fitted] {
 
 fn fitted(name: &'static str, strokes: usize, least_db: f64) -> Fitted {
     let picture = Image::open(committed(&format!("samples/{name}.png"))).unwrap();
-    let budget = Budget {
-        strokes: Some(strokes),
-        ..Budget::default()
-    };
+    let budget = of_strokes(strokes);
     let config = Config {
         budget,
         ..Config::default()
@@ -546,7 +541,7 @@ fn survives_inkscape(original: &str, plain: bool) {
     fs::write(&file, original).unwrap();
     let saved = saved_by_inkscape(&place, file.to_str().unwrap(), plain);
     assert_ne!(saved, original);
-    let render = |text: &str| verify::render(text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+    let render = |text: &str| on_white(text);
     let db = metrics::psnr(&render(original), &render(&saved)).unwrap();
     assert!(db >= 45.0, "plain {plain}: {db:.2} dB");
     let count = |text: &str, word| text.matches(word).count();
@@ -580,7 +575,7 @@ fn what_inkscape_saved_is_refined() {
         let refine = ["refine", "saved.svg", &picture, "-o", "better.svg"];
         let budget = ["--strokes", "300", "--preset", "draft"];
         place.done(&[&refine[..], &budget].concat());
-        let better = fs::read_to_string(place.path("better.svg")).unwrap();
+        let better = place.text("better.svg");
         let target = Image::open(&picture).unwrap();
         let db = |text: &str| verify::fidelity(text, &target).unwrap().psnr_db;
         let (before, after) = (db(&saved), db(&better));

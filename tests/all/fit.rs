@@ -4,8 +4,7 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use crate::support::drafts::draft;
-use crate::support::fits::{drawn, sample};
+use crate::support::{draft, drawn, of_bytes, of_psnr, of_strokes, sample};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
     Budget, CancelToken, Config, Fit, Fitter, Preset, Progress, Rates, Recipe, Stop,
@@ -91,10 +90,7 @@ fn every_coverage_function_ends_in_a_drawing_that_renderers_agree_on() {
 fn a_fidelity_is_met_by_few_strokes() {
     let picture = sample("coffee-300");
     let config = Config {
-        budget: Budget {
-            psnr_db: Some(25.0),
-            ..Budget::default()
-        },
+        budget: of_psnr(25.0),
         preset: Preset::Draft,
         ..Config::default()
     };
@@ -120,10 +116,7 @@ fn a_disc_without_antialiasing_reaches_the_fidelity_that_is_asked_for() {
     for least in [28.0, 30.0, 32.0] {
         let reaches = |seed: u64| {
             let config = Config {
-                budget: Budget {
-                    psnr_db: Some(least),
-                    ..Budget::default()
-                },
+                budget: of_psnr(least),
                 seed,
                 ..Config::default()
             };
@@ -145,10 +138,7 @@ fn bytes_are_met() {
     let picture = sample("noto-hibiscus");
     for most in [2_000, 12_345] {
         let config = Config {
-            budget: Budget {
-                bytes: Some(most),
-                ..Budget::default()
-            },
+            budget: of_bytes(most),
             ..draft(1)
         };
         let bytes = text(&drawn(&picture, &config), &config).len();
@@ -313,10 +303,7 @@ fn an_observer_sees_progress_and_may_stop() {
 fn an_observer_sees_drawings_that_compete_and_may_stop_those() {
     let picture = sample("noto-gem").flattened([1.0; 3]);
     let config = Config {
-        budget: Budget {
-            strokes: Some(40),
-            ..Budget::default()
-        },
+        budget: of_strokes(40),
         ..Config::default()
     };
     let (mut done, mut trials, mut last) = (0.0, 0, 0);
@@ -368,10 +355,7 @@ fn a_fit_that_may_finish_after_it_was_stopped_is_better_for_it() {
             }
         };
         let config = Config {
-            budget: Budget {
-                strokes: Some(1000),
-                ..Budget::default()
-            },
+            budget: of_strokes(1000),
             ..Config::default()
         };
         let fit = Fitter::new(config.clone())

@@ -3,8 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::mpsc;
 
-use crate::support::drafts::draft;
-use crate::support::fits::{drawn, sample};
+use crate::support::{draft, drawn, sample};
 use strokefit::ErrorKind;
 use strokefit::fit::{CancelToken, Checkpoint, Config, Fitter, Preset, Progress, Recipe, Stop};
 use strokefit::image::Image;

@@ -1,26 +1,18 @@
 //! The forms of a file, as users of the program and of the library meet them.
 
 use std::collections::BTreeSet;
-use std::fs;
 
-use crate::support::output::stderr;
-use crate::support::place::Place;
-use crate::support::refusal;
-use crate::support::repository::committed;
+use crate::support::{Place, assert_refused, assert_says, on_white, sample, stderr};
 use strokefit::image::Image;
 use strokefit::scene::{Mark, Stage};
 use strokefit::svg;
-use strokefit::verify::{self, Size};
+use strokefit::verify;
 
 /// A folder with a drawing of a sample.
 struct Drawn {
     place: Place,
     text: String,
     report: serde_json::Value,
-}
-
-fn sample(name: &str) -> String {
-    committed(&format!("samples/{name}.png"))
 }
 
 /// A draft of a sample in 150 strokes.
@@ -30,17 +22,12 @@ fn drawn(name: &str, options: &str) -> Drawn {
 
 /// A draft of a sample.
 fn drawn_with(name: &str, options: &str) -> Drawn {
-    fitted(name, &format!("--preset draft {options}"))
-}
-
-fn fitted(name: &str, options: &str) -> Drawn {
     let place = Place::new();
-    let input = sample(name);
-    let fixed = ["fit", &input, "-o", "a.svg", "--report", "a.json", "-q"];
-    let options: Vec<&str> = options.split_whitespace().collect();
-    place.done(&[&fixed[..], &options].concat());
+    place.done(&format!(
+        "fit @samples/{name}.png -o a.svg --report a.json -q --preset draft {options}"
+    ));
     Drawn {
-        text: fs::read_to_string(place.path("a.svg")).unwrap(),
+        text: place.text("a.svg"),
         report: place.report("a.json"),
         place,
     }
@@ -65,32 +52,6 @@ impl Drawn {
         };
         strokes.chain(scene.background).map(hex).collect()
     }
-}
-
-fn image(text: &str) -> Image {
-    let size = Size::Exact {
-        width: 300,
-        height: 200,
-    };
-    verify::render(text, size, Some([1.0; 3])).unwrap()
-}
-
-/// Agreement of resvg's renders of two files, dB.
-fn agreement(a: &str, b: &str) -> f64 {
-    strokefit::metrics::Agreement::between(&image(a), &image(b))
-        .unwrap()
-        .psnr_db
-}
-
-/// A refusal whose line of error has `words`.
-#[track_caller]
-fn assert_refused(options: &str, words: &str) {
-    let place = Place::new();
-    place.file("bad.gpl", "GIMP Palette\n1 2 x\n");
-    let input = sample("noto-gem");
-    let fit = ["fit", &input, "-o", "a.svg"];
-    let options: Vec<&str> = options.split(' ').collect();
-    refusal::assert_refused(&place, &[&fit[..], &options].concat(), 2, &[words]);
 }
 
 #[test]
@@ -123,7 +84,7 @@ fn the_smallest_file_of_lines_and_flat_art_looks_like_the_plain_one() {
 fn an_opaque_capsule_of_the_smallest_file_takes_52_bytes_at_most() {
     for name in ["coffee-300", "noto-hibiscus", "noto-telescope"] {
         let options = "--opaque --precision 1 --form smallest --strokes 600 --points 2";
-        let drawn = fitted(name, options);
+        let drawn = drawn_with(name, options);
         let bytes = drawn.number("bytes_per_stroke");
         assert_eq!(drawn.number("strokes"), 600.0);
         assert!(bytes <= 52.0, "{name}: {bytes}");
@@ -137,7 +98,7 @@ fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
     let bought = |form: &str| {
         // Drafts differ by 0.6 dB from one budget to the next, which is more than the form brings.
         let options = format!("--bytes 9000 --opaque --form {form} --look exact");
-        let drawn = fitted("coffee-300", &options);
+        let drawn = drawn_with("coffee-300", &options);
         assert!(drawn.text.len() <= 9000);
         (drawn.number("strokes"), drawn.psnr_db())
     };
@@ -154,40 +115,22 @@ fn a_drawing_in_classes_looks_like_the_plain_one_and_is_refined() {
         svg::read(&classes.text).unwrap(),
         svg::read(&plain.text).unwrap()
     );
-    assert!(image(&classes.text) == image(&plain.text));
+    assert!(on_white(&classes.text) == on_white(&plain.text));
     let (sheet, elements) = classes.text.split_once("</style>").unwrap();
     assert!(!elements.contains("fill=\"#") && !elements.contains("stroke=\"#"));
     let colors = sheet.matches("{fill:").count() + sheet.matches("{stroke:").count();
     assert!((5..=16).contains(&colors), "{sheet}");
-    let picture = sample("coffee-300");
-    let refine = ["refine", "a.svg", &picture, "-q", "--strokes", "170"];
-    for (options, name) in [
-        (&["--preset", "draft", "--form", "css"][..], "b.svg"),
-        (&["--preset", "draft", "--freeze-base"], "c.svg"),
-    ] {
-        classes
-            .place
-            .done(&[&refine[..], &["-o", name], options].concat());
-        let text = fs::read_to_string(classes.place.path(name)).unwrap();
+    let place = &classes.place;
+    for (options, name) in [("--form css", "b.svg"), ("--freeze-base", "c.svg")] {
+        let refine = "refine a.svg @samples/coffee-300.png -q --strokes 170 --preset draft";
+        place.done(&format!("{refine} -o {name} {options}"));
+        let text = place.text(name);
         assert!(svg::read(&text).unwrap().len() > 150, "{name}");
         assert_eq!(text.matches("<style>").count(), 1);
     }
-    let check = classes.place.done(&["check", "a.svg", &picture]);
+    let check = place.done("check a.svg @samples/coffee-300.png");
     let said = stderr(&check) + &String::from_utf8(check.stdout).unwrap();
-    assert!(said.contains("style-classes"), "{said}");
-}
-
-#[test]
-fn outlines_look_like_the_strokes() {
-    let strokes = drawn("coffee-300", "");
-    let scene = svg::read(&strokes.text).unwrap();
-    let options = svg::WriteOptions {
-        form: svg::Form::Outlines,
-        ..svg::WriteOptions::default()
-    };
-    let outlines = svg::write(&scene, &options);
-    assert!(!outlines.contains("stroke="));
-    assert!(agreement(&strokes.text, &outlines) > 40.0);
+    assert_says(&said, &["style-classes"]);
 }
 
 #[test]
@@ -204,8 +147,7 @@ fn a_page_has_the_width_that_was_asked_for() {
     let drawn = drawn("coffee-300", "--width 120mm");
     let head = r#"width="120mm" height="80mm" viewBox="0 0 300 200""#;
     assert!(drawn.text.contains(head));
-    let input = sample("coffee-300");
-    drawn.place.done(&["check", "a.svg", &input]);
+    drawn.place.done("check a.svg @samples/coffee-300.png");
 }
 
 #[test]
@@ -255,7 +197,7 @@ fn a_palette_is_fitted_and_not_only_applied() {
         }
     }
     let text = svg::write(&applied, &svg::WriteOptions::default());
-    let target = Image::open(sample("coffee-300")).unwrap();
+    let target = sample("coffee-300");
     let applied = verify::fidelity(&text, &target).unwrap().psnr_db;
     assert!(
         fitted.psnr_db() > applied + 1.0,
@@ -306,17 +248,17 @@ fn ink(place: &Place) -> Image {
 fn paper_stays_paper_if_the_palette_has_nothing_like_it() {
     let place = Place::new();
     let picture = ink(&place);
-    let fit = ["fit", "ink.png", "-o", "a.svg", "--strokes", "20"];
-    let output = place.done(&[&fit[..], &["--palette", "#0000ff"]].concat());
-    assert!(!stderr(&output).contains("warning"));
-    let text = fs::read_to_string(place.path("a.svg")).unwrap();
+    let fit = "fit ink.png -o a.svg --strokes 20 --palette";
+    let said = place.said(&format!("{fit} #0000ff"), 0);
+    assert!(!said.contains("warning"));
+    let text = place.text("a.svg");
     let scene = svg::read(&text).unwrap();
     assert!(scene.marks().all(|mark| mark.color() == [0.0, 0.0, 1.0]));
     assert!(scene.background.unwrap().iter().all(|&c| c > 0.9));
     assert!(verify::fidelity(&text, &picture).unwrap().psnr_db > 20.0);
     // A palette with something like it is all there is.
-    place.done(&[&fit[..], &["--palette", "#0000ff,#ffffff"]].concat());
-    let scene = svg::read(&fs::read_to_string(place.path("a.svg")).unwrap()).unwrap();
+    place.done(&format!("{fit} #0000ff,#ffffff"));
+    let scene = svg::read(&place.text("a.svg")).unwrap();
     assert_eq!(scene.background, Some([1.0; 3]));
 }
 
@@ -335,29 +277,33 @@ fn strokes_that_nobody_can_see_are_left_out_and_counted() {
 fn a_drawing_worse_than_a_page_of_one_colour_is_spoken_of() {
     let place = Place::new();
     ink(&place);
-    let fit = ["fit", "ink.png", "-o", "a.svg", "--colors", "1"];
-    let poor = place.done(&[&fit[..], &["--background", "#000000"]].concat());
-    let line = stderr(&poor);
-    assert!(line.contains("warning: a page of one colour"), "{line}");
-    assert!(!stderr(&place.done(&fit)).contains("warning"));
+    let fit = "fit ink.png -o a.svg --colors 1";
+    let poor = place.said(&format!("{fit} --background #000000"), 0);
+    assert_says(&poor, &["warning: a page of one colour"]);
+    assert!(!place.said(fit, 0).contains("warning"));
 }
 
 #[test]
 fn options_that_make_no_sense_are_refused() {
-    assert_refused("--width 12", "such as 120mm");
-    assert_refused("--width -3mm", "such as 120mm");
-    assert_refused("--outline --form smallest", "--outline");
-    assert_refused("--form tiny", "smallest");
-    assert_refused("--group size", "color");
-}
-
-#[test]
-fn bad_palettes_are_refused() {
-    assert_refused("--colors 0", "whole number");
-    assert_refused("--palette #12,#ffffff", "'#12' is not a colour");
-    assert_refused("--palette none.gpl", "no such file");
-    assert_refused("--palette bad.gpl", "line 2");
-    assert_refused("--palette #ffffff --colors 3", "--colors");
-    let ground = "--palette #ffffff --background #000000";
-    assert_refused(ground, "the background #000000 is not in the palette");
+    let place = Place::new();
+    place.file("bad.gpl", "GIMP Palette\n1 2 x\n");
+    for (options, words) in [
+        ("--width 12", "such as 120mm"),
+        ("--width -3mm", "such as 120mm"),
+        ("--outline --form smallest", "--outline"),
+        ("--form tiny", "smallest"),
+        ("--group size", "color"),
+        ("--colors 0", "whole number"),
+        ("--palette #12,#ffffff", "'#12' is not a colour"),
+        ("--palette none.gpl", "no such file"),
+        ("--palette bad.gpl", "line 2"),
+        ("--palette #ffffff --colors 3", "--colors"),
+        (
+            "--palette #ffffff --background #000000",
+            "the background #000000 is not in the palette",
+        ),
+    ] {
+        let fit = format!("fit @samples/noto-gem.png -o a.svg {options}");
+        assert_refused(&place, &fit, 2, &[words]);
+    }
 }

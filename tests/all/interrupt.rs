@@ -7,9 +7,7 @@ use std::path::Path;
 use std::process::{Child, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::place::{Place, STROKEFIT};
-use crate::support::signal::send;
-use crate::support::skip::skip;
+use crate::support::{Place, STROKEFIT, send, skip};
 
 /// A fit that takes hours when it is left alone.
 const ENDLESS: [&str; 4] = ["--preset", "best", "--strokes", "30000"];
@@ -159,7 +157,7 @@ fn a_second_signal_ends_at_once_and_leaves_the_old_file() {
     await_arrival(&child, 15);
     send(&child, 15);
     assert_eq!(end(child).status.signal(), Some(15));
-    let svg = fs::read_to_string(place.path("out.svg")).unwrap();
+    let svg = place.text("out.svg");
     assert_eq!(svg, "old");
 }
 

@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
+use crate::support::of_strokes;
 use serde_json::Value;
 use strokefit::ErrorKind;
-use strokefit::fit::{Background, Base, Budget, Colors, Config, Fitter, Preset};
+use strokefit::fit::{Background, Base, Colors, Config, Fitter, Preset};
 use strokefit::image::{Image, Rows};
 use strokefit::report::{self, FitReport, Judged, Run, Usage};
 use strokefit::svg::{Form, Group, Length, WriteOptions};
@@ -30,10 +31,7 @@ fn disc() -> Image {
 }
 
 fn config() -> Config {
-    let budget = Budget {
-        strokes: Some(5),
-        ..Budget::default()
-    };
+    let budget = of_strokes(5);
     Config {
         budget,
         preset: "draft".parse().unwrap(),

@@ -1,15 +1,12 @@
 //! Files for cutters, plotters and print: outlines, cut-outs, hatching, PDF and DXF.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::process::Command;
 
-use crate::support::place::Place;
-use crate::support::refusal::assert_refused;
-use crate::support::repository::committed;
-use crate::support::skip::skip;
+use crate::support::{Place, Words, agreement, assert_refused, committed, skip};
 use kurbo::Shape;
 use strokefit::image::Image;
-use strokefit::metrics::Agreement;
 use strokefit::scene::{Mark, Path, Scene};
 use strokefit::svg;
 use strokefit::verify::{self, Size};
@@ -28,18 +25,13 @@ fn with_picture(name: &str) -> Place {
 }
 
 /// The SVG of a fit of `a.png` with these options.
-fn fitted(place: &Place, options: &[&str]) -> String {
-    place.done(&[&["fit", "a.png", "-o", "a.svg", "-q"][..], options].concat());
-    fs::read_to_string(place.path("a.svg")).unwrap()
+fn fitted(place: &Place, options: &str) -> String {
+    place.done(&format!("fit a.png -o a.svg -q {options}"));
+    place.text("a.svg")
 }
 
 fn image(text: &str, scale: f64) -> Image {
     verify::render(text, Size::Scale(scale), Some([1.0; 3])).unwrap()
-}
-
-/// Agreement of two renders, dB.
-fn agreement(a: &Image, b: &Image) -> f64 {
-    Agreement::between(a, b).unwrap().psnr_db
 }
 
 /// The area that a ring encloses, px², with a sign for its direction.
@@ -68,8 +60,8 @@ fn beyond(scene: &Scene) -> f64 {
 fn areas_that_are_cut_out_fill_the_page_and_do_not_overlap() {
     for name in ["twemoji__dog", "fluent-emoji-flat__koala"] {
         let place = with_picture(name);
-        let plain = fitted(&place, &["--opaque"]);
-        let text = fitted(&place, &["--cutout"]);
+        let plain = fitted(&place, "--opaque");
+        let text = fitted(&place, "--cutout");
         let scene = svg::read(&text).unwrap();
         assert_eq!(scene.strokes().count(), 0);
         let mut colors: Vec<_> = scene
@@ -135,7 +127,7 @@ fn overlap_of_pairs(scene: &Scene) -> f64 {
 #[test]
 fn without_a_background_the_paper_is_not_cut_out() {
     let place = with_picture("simple-icons__volvo");
-    let text = fitted(&place, &["--cutout", "--background", "none"]);
+    let text = fitted(&place, "--cutout --background none");
     let scene = svg::read(&text).unwrap();
     let inked: f64 = sizes(&scene).iter().sum();
     assert!(inked > 1000.0 && inked < 0.7 * 256.0 * 256.0, "{inked}");
@@ -145,16 +137,15 @@ fn without_a_background_the_paper_is_not_cut_out() {
 #[test]
 fn every_stroke_has_one_outline_that_looks_like_it() {
     let place = Place::new();
-    let input = committed("samples/bicycle.png");
-    let options = ["--preset", "draft", "--strokes", "60", "--marks", "strokes"];
-    place.done(&[&["fit", &input, "-o", "a.svg", "-q"][..], &options].concat());
-    let strokes = fs::read_to_string(place.path("a.svg")).unwrap();
+    place.done("fit @samples/bicycle.png -o a.svg -q --preset draft --strokes 60 --marks strokes");
+    let strokes = place.text("a.svg");
     let scene = svg::read(&strokes).unwrap();
     let options = svg::WriteOptions {
         form: svg::Form::Outlines,
         ..svg::WriteOptions::default()
     };
     let outlines = svg::write(&scene, &options);
+    assert!(!outlines.contains("stroke="));
     let elements = outlines.matches("<path").count() + outlines.matches("<circle").count();
     assert_eq!(elements, scene.len());
     for scale in [1.0, 3.0] {
@@ -166,25 +157,12 @@ fn every_stroke_has_one_outline_that_looks_like_it() {
 #[test]
 fn nothing_runs_off_the_page_where_a_machine_reads_the_file() {
     let place = Place::new();
-    let input = committed("samples/coffee-300.png");
-    let fit = [
-        "fit",
-        &input,
-        "-o",
-        "a.svg",
-        "-q",
-        "--preset",
-        "draft",
-        "--strokes",
-        "200",
-    ];
-    for options in [
-        &["--pens", "2,5"][..],
-        &["--width", "120mm"],
-        &["--order", "travel"],
-    ] {
-        place.done(&[&fit[..], options].concat());
-        let scene = svg::read(&fs::read_to_string(place.path("a.svg")).unwrap()).unwrap();
+    for options in ["--pens 2,5", "--width 120mm", "--order travel"] {
+        let few = "-q --preset draft --strokes 200";
+        place.done(&format!(
+            "fit @samples/coffee-300.png -o a.svg {few} {options}"
+        ));
+        let scene = svg::read(&place.text("a.svg")).unwrap();
         assert!(beyond(&scene) <= 0.0, "{options:?}: {}", beyond(&scene));
     }
 }
@@ -192,7 +170,7 @@ fn nothing_runs_off_the_page_where_a_machine_reads_the_file() {
 #[test]
 fn hatching_fills_areas_with_lines() {
     let place = with_picture("twemoji__dog");
-    let text = fitted(&place, &["--hatch", "3px:30", "--background", "none"]);
+    let text = fitted(&place, "--hatch 3px:30 --background none");
     let scene = svg::read(&text).unwrap();
     assert_eq!(scene.areas().count(), 0);
     let lines = scene.strokes().filter(|s| s.path.points().len() == 2);
@@ -207,25 +185,13 @@ fn hatching_fills_areas_with_lines() {
         .filter(|slope| (**slope - 30_f64.to_radians().tan()).abs() < 0.03);
     assert!(right.count() > 100, "{}", slopes.len());
     // Lines as wide as they are apart leave little bare.
-    let plain = fitted(&place, &["--opaque", "--background", "none"]);
+    let plain = fitted(&place, "--opaque --background none");
     let seen = agreement(&image(&text, 1.0), &image(&plain, 1.0));
     assert!(seen > 18.0, "{seen}");
-    assert_refused(
-        &place,
-        &["fit", "a.png", "-o", "a.svg", "--hatch", "5"],
-        2,
-        &["0.5mm:30"],
-    );
-    assert_refused(
-        &place,
-        &["fit", "a.png", "-o", "a.svg", "--hatch", "0.01mm"],
-        2,
-        &["apart"],
-    );
 }
 
 /// The standard output of a program; `None`, and a word on it, if it is missing here.
-fn output(program: &str, args: &[&str], place: &Place) -> Option<String> {
+fn output(program: &str, args: &[impl AsRef<OsStr>], place: &Place) -> Option<String> {
     match place.command(program).args(args).output() {
         Ok(output) if output.status.success() => Some(String::from_utf8(output.stdout).unwrap()),
         Ok(output) => panic!("{program}: {}", String::from_utf8_lossy(&output.stderr)),
@@ -239,32 +205,23 @@ fn output(program: &str, args: &[&str], place: &Place) -> Option<String> {
 #[test]
 fn a_pdf_is_drawn_like_the_svg() {
     let place = Place::new();
-    let input = committed("samples/bicycle.png");
-    let options = ["--preset", "draft", "--strokes", "60", "--width", "100mm"];
-    let fit = ["fit", &input, "-o", "a.svg", "-o", "a.pdf", "-q"];
-    place.done(&[&fit[..], &options].concat());
-    place.done(&["render", "a.svg", "-o", "b.pdf"]);
-    let pdf = fs::read(place.path("a.pdf")).unwrap();
+    let options = "-q --preset draft --strokes 60 --width 100mm";
+    place.done(&format!(
+        "fit @samples/bicycle.png -o a.svg -o a.pdf {options}"
+    ));
+    place.done("render a.svg -o b.pdf");
+    let pdf = place.bytes("a.pdf");
     assert!(pdf.starts_with(b"%PDF-1.5") && pdf.ends_with(b"%%EOF\n"));
-    assert_eq!(pdf, fs::read(place.path("b.pdf")).unwrap());
+    assert_eq!(pdf, place.bytes("b.pdf"));
     assert!(as_pdf(&place).is_none_or(|seen| seen > 34.0));
 }
 
 /// Agreement of `a.pdf`, as poppler draws it, with `a.svg`, dB; `None` without poppler. Both are drawn at four times the size
 /// and averaged, since antialiasing differs.
 fn as_pdf(place: &Place) -> Option<f64> {
-    let svg = image(&fs::read_to_string(place.path("a.svg")).unwrap(), 4.0);
-    let [width, height] = [svg.width(), svg.height()].map(|side| side.to_string());
-    let args = [
-        "-png",
-        "-singlefile",
-        "-scale-to-x",
-        &width,
-        "-scale-to-y",
-        &height,
-        "a.pdf",
-        "a",
-    ];
+    let svg = image(&place.text("a.svg"), 4.0);
+    let size = format!("-scale-to-x {} -scale-to-y {}", svg.width(), svg.height());
+    let args = format!("-png -singlefile {size} a.pdf a").words();
     output("pdftoppm", &args, place)?;
     let drawn = Image::open(place.path("a.png")).unwrap();
     Some(agreement(&averaged(&drawn), &averaged(&svg)))
@@ -288,10 +245,8 @@ fn averaged(image: &Image) -> Image {
 fn a_pdf_has_the_gradient_and_the_opacities() {
     let place = Place::new();
     for name in ["fade-400", "glow-300"] {
-        let input = committed(&format!("samples/{name}.png"));
-        place.done(&[
-            "fit", &input, "-o", "a.svg", "-o", "a.pdf", "-q", "--preset", "draft",
-        ]);
+        let fit = format!("fit @samples/{name}.png -o a.svg -o a.pdf -q --preset draft");
+        place.done(&fit);
         let seen = as_pdf(&place);
         assert!(seen.is_none_or(|seen| seen > 34.0), "{name}: {seen:?}");
     }
@@ -300,20 +255,18 @@ fn a_pdf_has_the_gradient_and_the_opacities() {
 #[test]
 fn a_pdf_has_square_ends_and_mitred_corners() {
     let place = Place::new();
-    let drawing = committed("tests/data/plans/chevrons.svg");
-    place.done(&["render", &drawing, "-o", "chevrons.png", "-q"]);
-    place.done(&["fit", "chevrons.png", "-o", "a.svg", "-o", "a.pdf", "-q"]);
-    let text = fs::read_to_string(place.path("a.svg")).unwrap();
+    place.done("render @tests/data/plans/chevrons.svg -o chevrons.png -q");
+    place.done("fit chevrons.png -o a.svg -o a.pdf -q");
+    let text = place.text("a.svg");
     assert_eq!(svg::read(&text).unwrap().areas().count(), 0, "{text}");
-    if let Some(db) = as_pdf(&place) {
-        assert!(db > 33.0, "{db}");
-    }
+    let seen = as_pdf(&place);
+    assert!(seen.is_none_or(|seen| seen > 33.0), "{seen:?}");
 }
 
 #[test]
 fn a_pdf_has_the_shapes() {
     let place = with_picture("twemoji__dog");
-    let text = fitted(&place, &["-o", "a.pdf"]);
+    let text = fitted(&place, "-o a.pdf");
     assert!(text.contains("<circle"), "{text}");
     let seen = as_pdf(&place);
     assert!(seen.is_none_or(|seen| seen > 34.0), "{seen:?}");
@@ -332,13 +285,12 @@ print(len(drawing.modelspace()), low.x, low.y, high.x, high.y, drawing.units, er
 #[test]
 fn a_dxf_has_lines_and_arcs_in_millimetres_on_layers_by_colour() {
     let place = with_picture("twemoji__dog");
-    let options = ["--cutout", "--width", "100mm", "-o", "a.dxf"];
-    let scene = svg::read(&fitted(&place, &options)).unwrap();
-    let text = fs::read_to_string(place.path("a.dxf")).unwrap();
+    let scene = svg::read(&fitted(&place, "--cutout --width 100mm -o a.dxf")).unwrap();
+    let text = place.text("a.dxf");
     let rings: usize = scene.marks().map(|mark| mark.paths().len()).sum();
     assert_eq!(text.matches("\nLWPOLYLINE\n").count(), rings);
     assert!(text.contains("$INSUNITS\n70\n4\n") && text.ends_with("EOF\n"));
-    place.done(&["render", "a.svg", "-o", "b.dxf"]);
+    place.done("render a.svg -o b.dxf");
     let has_ezdxf = Command::new("python3")
         .args(["-c", "import ezdxf"])
         .output();
@@ -364,36 +316,32 @@ fn a_dxf_has_lines_and_arcs_in_millimetres_on_layers_by_colour() {
 #[test]
 fn render_makes_of_a_drawing_what_a_fit_makes() {
     let place = with_picture("simple-icons__volvo");
-    let text = fitted(&place, &["--opaque", "--width", "80mm"]);
-    let render = |option: &[&str]| {
-        place.done(&[&["render", "a.svg", "-o", "b.svg"][..], option].concat());
-        fs::read_to_string(place.path("b.svg")).unwrap()
+    let text = fitted(&place, "--opaque --width 80mm");
+    let render = |option: &str| {
+        place.done(&format!("render a.svg -o b.svg {option}"));
+        place.text("b.svg")
     };
-    for option in [&["--cutout"][..], &["--outline"]] {
+    for option in ["--cutout", "--outline"] {
         let made = render(option);
         assert!(made.contains("width=\"80mm\"") && !made.contains("stroke="));
         let seen = agreement(&image(&made, 1.0), &image(&text, 1.0));
-        assert!(seen > 30.0, "{option:?}: {seen}");
+        assert!(seen > 30.0, "{option}: {seen}");
     }
-    let hatched = svg::read(&render(&["--hatch", "1mm"])).unwrap();
+    let hatched = svg::read(&render("--hatch 1mm")).unwrap();
     assert!(hatched.areas().count() == 0 && hatched.strokes().count() > 20);
-    assert_refused(
-        &place,
-        &["render", "a.svg", "-o", "b.svg"],
-        2,
-        &["--cutout"],
-    );
+    assert_refused(&place, "render a.svg -o b.svg", 2, &["--cutout"]);
 }
 
 #[test]
 fn files_for_machines_that_make_no_sense_are_refused() {
     let place = with_picture("simple-icons__volvo");
-    let fit = ["fit", "a.png", "-o", "a.svg"];
     for (options, word) in [
-        (&["--cutout", "--outline"][..], "--cutout"),
-        (&["--cutout", "--hatch", "1mm"], "--cutout"),
-        (&["-o", "a.eps"], ".eps"),
+        ("--cutout --outline", "--cutout"),
+        ("--cutout --hatch 1mm", "--cutout"),
+        ("-o a.eps", ".eps"),
+        ("--hatch 5", "0.5mm:30"),
+        ("--hatch 0.01mm", "apart"),
     ] {
-        assert_refused(&place, &[&fit[..], options].concat(), 2, &[word]);
+        assert_refused(&place, &format!("fit a.png -o a.svg {options}"), 2, &[word]);
     }
 }

@@ -6,40 +6,41 @@
 /// Helpers of several modules.
 mod support {
     pub(crate) mod areas;
-    pub(crate) mod drafts;
-    pub(crate) mod fits;
+    mod fits;
     pub(crate) mod paths;
-    pub(crate) mod repository;
+
+    pub(crate) use fits::*;
 
     // Of the program.
     #[cfg(feature = "cli")]
-    pub(crate) mod built;
+    mod built;
     #[cfg(feature = "cli")]
-    pub(crate) mod engine;
+    mod engine;
     #[cfg(feature = "cli")]
-    pub(crate) mod files;
+    mod output;
     #[cfg(feature = "cli")]
-    pub(crate) mod output;
+    mod picture;
     #[cfg(feature = "cli")]
-    pub(crate) mod picture;
+    mod place;
     #[cfg(feature = "cli")]
-    pub(crate) mod pipe;
+    mod program;
     #[cfg(feature = "cli")]
-    pub(crate) mod place;
+    mod runs;
     #[cfg(feature = "cli")]
-    pub(crate) mod program;
+    mod signal;
     #[cfg(feature = "cli")]
-    pub(crate) mod refusal;
+    mod skip;
     #[cfg(feature = "cli")]
-    pub(crate) mod report;
+    mod verdicts;
     #[cfg(feature = "cli")]
-    pub(crate) mod signal;
+    mod words;
+
     #[cfg(feature = "cli")]
-    pub(crate) mod skip;
-    #[cfg(feature = "cli")]
-    pub(crate) mod verdicts;
-    #[cfg(feature = "cli")]
-    pub(crate) mod words;
+    pub(crate) use {
+        engine::installed, output::stderr, place::Place, place::STROKEFIT, runs::assert_refused,
+        runs::assert_says, signal::send, skip::skip, verdicts::entry, verdicts::record,
+        words::Words,
+    };
 }
 
 // The library.

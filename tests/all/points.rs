@@ -1,13 +1,13 @@
 //! Strokes get the points that their picture asks for: bent and closed lines are one stroke, straight ones keep two
 //! points, and budgets hold.
 
-use strokefit::fit::{Background, Budget, Config, Fit, Fitter};
+use crate::support::{of_bytes, of_strokes, rendered};
+use strokefit::fit::{Background, Config, Fit, Fitter};
 use strokefit::image::Image;
 use strokefit::math::Point;
 use strokefit::metrics;
 use strokefit::scene::{Cap, Path, PathPoint, Scene, Stage, Stroke};
 use strokefit::svg::{self, WriteOptions};
-use strokefit::verify::{self, Size};
 
 const SIDE: u32 = 96;
 
@@ -39,22 +39,19 @@ fn drawn(stroke: Stroke) -> Image {
         ..Scene::empty(SIDE, SIDE, Some([1.0; 3]))
     };
     let text = svg::write(&scene, &WriteOptions::default());
-    verify::render(&text, Size::Scale(1.0), None).unwrap()
+    rendered(&text)
 }
 
 /// A drawing of `strokes` strokes, each of at most `points` points, and its fidelity, dB.
 fn fitted(picture: &Image, strokes: usize, points: Option<usize>) -> (Fit, f64) {
     let config = Config {
-        budget: Budget {
-            strokes: Some(strokes),
-            ..Budget::default()
-        },
+        budget: of_strokes(strokes),
         points,
         background: Background::Color([1.0; 3]),
         ..Config::default()
     };
     let fit = Fitter::new(config).fit(picture).unwrap();
-    let file = verify::render(&fit.svg(), Size::Scale(1.0), None).unwrap();
+    let file = rendered(&fit.svg());
     let db = metrics::psnr(picture, &file).unwrap();
     (fit, db)
 }
@@ -122,10 +119,7 @@ fn more_points_draw_better() {
 #[test]
 fn a_budget_of_bytes_is_kept_with_points() {
     let ring = ring();
-    let budget = Budget {
-        bytes: Some(1500),
-        ..Budget::default()
-    };
+    let budget = of_bytes(1500);
     let config = |points| Config {
         budget,
         points,
@@ -135,7 +129,7 @@ fn a_budget_of_bytes_is_kept_with_points() {
     let db = [None, Some(2)].map(|points| {
         let fit = Fitter::new(config(points)).fit(&ring).unwrap();
         assert!(fit.svg().len() <= 1500);
-        let file = verify::render(&fit.svg(), Size::Scale(1.0), None).unwrap();
+        let file = rendered(&fit.svg());
         metrics::psnr(&ring, &file).unwrap()
     });
     assert!(db[0] > db[1] + 1.0, "{db:?}");
@@ -147,16 +141,13 @@ fn strokes_that_have_points_are_fitted_further() {
     let (fit, db) = fitted(&bent, 1, None);
     let base = strokefit::fit::Base::read(fit.svg(), &bent, false).unwrap();
     let config = Config {
-        budget: Budget {
-            strokes: Some(2),
-            ..Budget::default()
-        },
+        budget: of_strokes(2),
         ..Config::default()
     };
     let more = Fitter::new(config).on(base).fit(&bent).unwrap();
     let most = points(&more.scene).into_iter().max().unwrap();
     assert!(most > 2, "{:?}", points(&more.scene));
-    let file = verify::render(&more.svg(), Size::Scale(1.0), None).unwrap();
+    let file = rendered(&more.svg());
     let refined = metrics::psnr(&bent, &file).unwrap();
     assert!(refined >= db, "{refined} < {db}");
 }

@@ -3,18 +3,14 @@
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
-use crate::support::place::{Place, STROKEFIT};
-use crate::support::repository::committed;
+use crate::support::{Place, STROKEFIT, Words, assert_says, committed};
 
 /// Text that a terminal 120 columns wide gets to see of `strokefit ARGS`.
 fn on_a_terminal(place: &Place, args: &str) -> String {
+    let line = format!("stty cols 120; '{STROKEFIT}' {args}");
     let output = place
         .command("script")
-        .args([
-            "-qec",
-            &format!("stty cols 120; '{STROKEFIT}' {args}"),
-            "/dev/null",
-        ])
+        .args(["-qec", &line, "/dev/null"])
         .env("NO_COLOR", "1")
         .output()
         .unwrap();
@@ -27,8 +23,9 @@ fn on_a_terminal(place: &Place, args: &str) -> String {
 fn a_terminal_sees_stage_strokes_fidelity_rate_and_time_left() {
     let place = Place::new();
     let input = committed("samples/coffee-300.png");
-    let seen = on_a_terminal(&place, &format!("fit '{input}' -o a.svg --strokes 400"));
-    for words in [
+    let fit = format!("fit '{input}' -o a.svg --strokes 400");
+    let seen = on_a_terminal(&place, &fit);
+    let parts = [
         "stage ",
         " of ",
         "polish",
@@ -36,12 +33,10 @@ fn a_terminal_sees_stage_strokes_fidelity_rate_and_time_left() {
         " dB, ",
         "moves/s",
         " to go: ",
-        "a.svg: ",
-    ] {
-        assert!(seen.contains(words), "no {words:?} in {seen}");
-    }
-    let quiet = on_a_terminal(&place, &format!("fit '{input}' -o a.svg --strokes 400 -q"));
-    assert_eq!(quiet, "");
+    ];
+    assert_says(&seen, &parts);
+    assert_says(&seen, &["a.svg: "]);
+    assert_eq!(on_a_terminal(&place, &format!("{fit} -q")), "");
 }
 
 #[test]
@@ -49,73 +44,38 @@ fn several_pictures_are_counted() {
     let place = Place::new();
     place.picture("a.png", 300, 200);
     place.picture("b.png", 300, 200);
-    let seen = on_a_terminal(
-        &place,
-        "fit a.png b.png -o {stem}.svg --strokes 200 --preset draft",
-    );
-    assert!(
-        seen.contains("1 of 2 ") && seen.contains("2 of 2 "),
-        "{seen}"
-    );
-    assert!(seen.contains("2 drawn, 0 failed"), "{seen}");
+    let fit = "fit a.png b.png -o {stem}.svg --strokes 200 --preset draft";
+    let seen = on_a_terminal(&place, fit);
+    assert_says(&seen, &["1 of 2 ", "2 of 2 ", "2 drawn, 0 failed"]);
 }
 
 #[test]
 fn nothing_is_coloured_against_the_wish() {
-    let place = Place::new();
-    let help = on_a_terminal(&place, "fit --help");
-    assert!(
-        help.contains("Usage:") && !help.contains('\u{1b}'),
-        "{help}"
-    );
+    let help = on_a_terminal(&Place::new(), "fit --help");
+    let is_coloured = help.contains('\u{1b}');
+    assert!(help.contains("Usage:") && !is_coloured, "{help}");
 }
 
 /// Each part is told of when it ends, long before the fit does.
 #[test]
 fn a_pipe_hears_of_parts_while_it_happens() {
     let place = Place::new();
-    let input = committed("samples/coffee-300.png");
-    let endless = [
-        "-v",
-        "fit",
-        &input,
-        "-o",
-        "a.svg",
-        "--strokes",
-        "30000",
-        "--preset",
-        "best",
-    ];
-    let mut child = place
-        .command(STROKEFIT)
-        .args(endless)
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
-    let line = lines
-        .find(|line| line.as_ref().unwrap().starts_with("stage 1"))
-        .unwrap()
-        .unwrap();
+    let endless = "-v fit @samples/coffee-300.png -o a.svg --strokes 30000 --preset best";
+    let mut command = place.command(STROKEFIT);
+    command.args(endless.words()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    let mut lines = lines.map(Result::unwrap);
+    let line = lines.find(|line| line.starts_with("stage 1")).unwrap();
     assert!(child.try_wait().unwrap().is_none());
     child.kill().unwrap();
     child.wait().unwrap();
-    for word in ["strokes", "iterations", " s, ", " dB"] {
-        assert!(line.contains(word), "{line}");
-    }
+    assert_says(&line, &["strokes", "iterations", " s, ", " dB"]);
 }
 
 #[test]
 fn polish_and_settling_are_mentioned() {
-    let place = Place::new();
-    let input = committed("samples/coffee-300.png");
-    let args = ["-v", "fit", &input, "-o", "a.svg", "--strokes", "60"];
-    let output = place.command(STROKEFIT).args(args).output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    for part in ["stage 1", "polish: ", "settling: "] {
-        assert!(
-            said.lines().any(|line| line.starts_with(part)),
-            "no {part:?} in {said}"
-        );
-    }
+    let fit = "-v fit @samples/coffee-300.png -o a.svg --strokes 60";
+    let said = Place::new().said(fit, 0);
+    assert_says(&said, &["stage 1", "\npolish: ", "\nsettling: "]);
 }

@@ -4,10 +4,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::support::output::stderr;
-use crate::support::place::Place;
-use crate::support::refusal::assert_refused;
-use crate::support::repository::committed;
+use crate::support::{Place, assert_refused, committed, stderr};
 use strokefit::svg;
 
 /// The cat in 8 colours, traced with the `vtracer` crate 0.6.5 at its defaults, but for speckles of 16 px,
@@ -40,7 +37,7 @@ fn draft(place: &Place, words: &str) -> f64 {
 }
 
 fn read(place: &Place, name: &str) -> String {
-    fs::read_to_string(place.path(name)).unwrap()
+    place.text(name)
 }
 
 fn layers(place: &Place, name: &str) -> Vec<usize> {

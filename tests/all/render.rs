@@ -6,6 +6,7 @@ use proptest::prelude::*;
 
 use crate::support::areas::{Rings, areas, paints};
 use crate::support::paths::paths;
+use crate::support::rendered;
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::image::Image;
@@ -19,7 +20,6 @@ use strokefit::render::{
 use strokefit::rng::draw;
 use strokefit::scene::{Cap, Path, PathPoint, Scene, Stage, Stroke};
 use strokefit::svg::{self, WriteOptions};
-use strokefit::verify::{self, Size};
 
 /// ε of the fast renderer's distances, px².
 const EPS: f64 = 1e-6;
@@ -395,7 +395,7 @@ fn renderer(case: &Case, simd: Simd) -> Renderer {
     Renderer::new(Grid::new(case.width, case.height), simd.level().unwrap())
 }
 
-fn rendered(case: &Case, simd: Simd, softness: Softness) -> Image {
+fn fast_image(case: &Case, simd: Simd, softness: Softness) -> Image {
     let mut canvas = Canvas::flat(Grid::new(case.width, case.height), [0.0; 3]);
     renderer(case, simd).forward(
         &case.strokes,
@@ -475,7 +475,7 @@ fn report(failures: Vec<String>) {
 
 /// Differences between the fast image and the naive one.
 fn image_failures(case: &Case, softness: Softness) -> Vec<String> {
-    let fast = rendered(case, Simd::Auto, softness);
+    let fast = fast_image(case, Simd::Auto, softness);
     let slow = oracle(softness.coverage, softness.width).render(&naive(case));
     let mut failures = Vec::new();
     for (i, expected) in slow.iter().enumerate() {
@@ -700,7 +700,7 @@ proptest! {
         cut.strokes = Strokes::new();
         cut.strokes.push(StrokeRef { points: &[a, between, b], off: &[false; 3], ..stroke });
         let softness = Softness { coverage: Coverage::Smoothstep, width: 1.5 };
-        let [whole, cut] = [whole, cut].map(|case| rendered(&case, Simd::Auto, softness));
+        let [whole, cut] = [whole, cut].map(|case| fast_image(&case, Simd::Auto, softness));
         for (x, y) in whole.planes().iter().flatten().zip(cut.planes().iter().flatten()) {
             prop_assert!((x - y).abs() < 1e-3, "{x} {y}");
         }
@@ -738,7 +738,7 @@ fn deepest_hole(text: &str) -> f64 {
     let scene = svg::read(text).unwrap();
     let stroke = scene.strokes().next().unwrap();
     let line = stroke.path.flattened(0.02);
-    let seen = verify::render(text, Size::Scale(1.0), None).unwrap();
+    let seen = rendered(text);
     let width = seen.width();
     let light = seen.planes()[0]
         .iter()
@@ -1023,7 +1023,7 @@ fn strokes_with_numbers_that_are_not_finite_draw_nothing_and_spoil_nothing() {
         width: 1.0,
     };
     for clean in [random(2, 40, 40, 5), random_paths(2, 40, 40, 5)] {
-        let expected = rendered(&clean, Simd::Auto, softness);
+        let expected = fast_image(&clean, Simd::Auto, softness);
         let gradients = differentiated(&clean, Simd::Auto, softness, Loss::L2);
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             for i in 0..clean.strokes.len() {
@@ -1033,7 +1033,7 @@ fn strokes_with_numbers_that_are_not_finite_draw_nothing_and_spoil_nothing() {
                     let number = case.strokes.range(clean.strokes.len()).start + k;
                     case.strokes.numbers_mut()[number] = bad;
                     let name = format!("{}: number {k} of stroke {i} is {bad}", clean.name);
-                    assert_eq!(rendered(&case, Simd::Auto, softness), expected, "{name}");
+                    assert_eq!(fast_image(&case, Simd::Auto, softness), expected, "{name}");
                     let got = differentiated(&case, Simd::Auto, softness, Loss::L2);
                     let others = gradients.strokes.len();
                     assert_eq!(got.strokes[..others], gradients.strokes, "{name}");

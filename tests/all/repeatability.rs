@@ -9,6 +9,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::{of_bytes, of_strokes};
 use strokefit::fit::{
     Background, Base, Budget, Colors, Config, ErrorWeighting, Execution, Fit, Fitter, Preset,
     Recipe, Simd,
@@ -113,10 +114,7 @@ fn draft(budget: Budget) -> Config {
 }
 
 fn at_most(strokes: usize) -> Budget {
-    Budget {
-        strokes: Some(strokes),
-        ..Budget::default()
-    }
+    of_strokes(strokes)
 }
 
 /// A draft is not settled against its file unless asked.
@@ -213,10 +211,7 @@ fn other_forms() -> [Case; 2] {
     let outlines = Config {
         coverage: "sigmoid>smoothstep".parse().unwrap(),
         file: written(Form::Outlines, 3),
-        ..draft(Budget {
-            bytes: Some(20_000),
-            ..Budget::default()
-        })
+        ..draft(of_bytes(20_000))
     };
     [
         Case::new("noto-hibiscus", "pens on blue, settled", pens),

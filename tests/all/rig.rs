@@ -4,8 +4,7 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::process::Output;
 
-use crate::support::output::stderr;
-use crate::support::place::{Place, STROKEFIT};
+use crate::support::{Place, STROKEFIT, stderr};
 
 /// Runs a copy of the program, which nothing lies beside but what is in this place, with `path` to look for others.
 fn run(place: &Place, path: &str, args: &[&str]) -> Output {

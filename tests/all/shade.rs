@@ -1,7 +1,6 @@
 //! Pages that shade: a gradient is chosen where the picture is one, and kept.
 
-use crate::support::drafts::draft;
-use crate::support::fits::{drawn, sample};
+use crate::support::{draft, drawn, sample};
 use strokefit::fit::{Background, Base, Colors, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::scene::{Scene, Shade};

@@ -1,7 +1,6 @@
 //! Soft shadows and glows: each is a blurred shape on the page, and kept.
 
-use crate::support::drafts::draft;
-use crate::support::fits::{drawn, sample};
+use crate::support::{draft, drawn, sample};
 use strokefit::fit::{Background, Base, Colors, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;

@@ -1,8 +1,6 @@
 //! Shapes through the program: refined, animated, cut out, as DXF.
 
-use std::fs;
-
-use crate::support::place::Place;
+use crate::support::{Place, agreement, assert_says, on_white, rendered};
 use strokefit::scene::{Mark, Scene, Shape};
 use strokefit::svg;
 use strokefit::verify::{self, Size};
@@ -32,10 +30,6 @@ fn put_picture(place: &Place, name: &str, elements: &str) {
     place.file(name, picture.reduced(160, 120).encode_png().unwrap());
 }
 
-fn read(place: &Place, name: &str) -> String {
-    fs::read_to_string(place.path(name)).unwrap()
-}
-
 /// The lines of a file that are shapes.
 fn elements(text: &str) -> Vec<&str> {
     let is_shape = |line: &&str| line.starts_with("<circle") || line.starts_with("<rect x=");
@@ -47,9 +41,9 @@ fn shapes(scene: &Scene) -> usize {
 }
 
 /// Draws `a.svg`, whose marks are three shapes.
-fn fitted(place: &Place, options: &[&str]) -> String {
-    place.done(&[&["fit", "a.png", "-o", "a.svg", "-q"][..], options].concat());
-    let text = read(place, "a.svg");
+fn fitted(place: &Place, options: &str) -> String {
+    place.done(&format!("fit a.png -o a.svg -q {options}"));
+    let text = place.text("a.svg");
     assert_eq!(elements(&text).len(), 3, "{text}");
     text
 }
@@ -57,13 +51,13 @@ fn fitted(place: &Place, options: &[&str]) -> String {
 #[test]
 fn shapes_of_a_base_stay_shapes() {
     let place = with_picture();
-    let base = fitted(&place, &[]);
+    let base = fitted(&place, "");
     // The circle has moved, and something is new.
     let more = SHAPES.replace("cx=\"32.3\"", "cx=\"32.7\"");
     let more = more + r##"<path d="M90 20L150 40L100 50z" fill="#2060c0"/>"##;
     put_picture(&place, "b.png", &more);
-    place.done(&["refine", "a.svg", "b.png", "-o", "b.svg", "-q"]);
-    let refined = read(&place, "b.svg");
+    place.done("refine a.svg b.png -o b.svg -q");
+    let refined = place.text("b.svg");
     let scene = svg::read(&refined).unwrap();
     assert!(shapes(&scene) >= 3 && scene.len() > 3, "{refined}");
     let moved = scene.areas().any(|area| match area.rings[0].shape() {
@@ -72,7 +66,7 @@ fn shapes_of_a_base_stay_shapes() {
     });
     assert!(moved, "{refined}");
     place.done("refine a.svg b.png -o c.svg -q --freeze-base");
-    let frozen = read(&place, "c.svg");
+    let frozen = place.text("c.svg");
     for element in elements(&base) {
         assert!(frozen.contains(element), "{element}: {frozen}");
     }
@@ -88,95 +82,88 @@ fn bands(text: &str) -> usize {
 fn bands_are_lines_in_every_file() {
     let place = Place::new();
     put_picture(&place, "a.png", BANDS);
-    let outputs = ["-o", "a.animated.svg", "-o", "a.dxf"];
-    let kept = ["--checkpoint", "fit.state", "--checkpoint-every", "0.001"];
-    place.done(&[&["fit", "a.png", "-o", "a.svg", "-q"], &outputs[..], &kept].concat());
-    let text = read(&place, "a.svg");
+    let kept = "--checkpoint fit.state --checkpoint-every 0.001";
+    place.done(&format!(
+        "fit a.png -o a.svg -o a.animated.svg -o a.dxf -q {kept}"
+    ));
+    let text = place.text("a.svg");
     assert_eq!(bands(&text), 2, "{text}");
     assert_eq!(svg::read(&text).unwrap().len(), 2, "{text}");
     // A file without round ends needs not say that there are none.
     assert!(!text.contains("stroke-linecap"), "{text}");
-    let dxf = read(&place, "a.dxf");
+    let dxf = place.text("a.dxf");
     // Two corners each, and no outline around them.
     assert_eq!(dxf.matches("\nLWPOLYLINE\n").count(), 2, "{dxf}");
-    let animated = read(&place, "a.animated.svg");
+    let animated = place.text("a.animated.svg");
     assert_eq!(
         animated.matches("\"stroke-dasharray\"").count(),
         2,
         "{animated}"
     );
     // A style sheet has their colour and width.
-    place.done(&["fit", "a.png", "-o", "css.svg", "-q", "--form", "css"]);
-    let css = read(&place, "css.svg");
+    place.done("fit a.png -o css.svg -q --form css");
+    let css = place.text("css.svg");
     assert!(bands(&css) == 2 && css.contains("class="), "{css}");
     // What is read back is written the same way, and frozen ones stay.
     place.done("refine a.svg a.png -o b.svg -q --freeze-base --strokes +1");
-    assert!(bands(&read(&place, "b.svg")) >= 2);
+    assert!(bands(&place.text("b.svg")) >= 2);
     for form in ["--outline", "--cutout"] {
         place.done(&["render", "a.svg", "-o", "c.svg", form]);
-        let filled = read(&place, "c.svg");
+        let filled = place.text("c.svg");
         assert!(
             bands(&filled) == 0 && !filled.contains("stroke="),
             "{filled}"
         );
-        let image = |text: &str| verify::render(text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
-        let seen = strokefit::metrics::Agreement::between(&image(&filled), &image(&text));
-        assert!(seen.unwrap().psnr_db > 35.0, "{form}");
+        let seen = agreement(&on_white(&filled), &on_white(&text));
+        assert!(seen > 35.0, "{form}");
     }
 }
 
 #[test]
 fn shapes_appear_in_an_animation() {
     let place = with_picture();
-    fitted(&place, &["-o", "a.animated.svg", "-o", "a.apng"]);
-    let animated = read(&place, "a.animated.svg");
-    for part in [
-        "<circle cx=",
-        "attributeName=\"fill-opacity\"",
-        "attributeName=\"stroke-dasharray\"",
-        "</circle>",
-        "</rect>",
-    ] {
-        assert!(animated.contains(part), "{part}: {animated}");
-    }
-    let render = |text: &str| verify::render(text, Size::Scale(1.0), None).unwrap();
-    assert!(render(&animated) == render(&read(&place, "a.svg")));
+    fitted(&place, "-o a.animated.svg -o a.apng");
+    let animated = place.text("a.animated.svg");
+    assert_says(
+        &animated,
+        &[
+            "<circle cx=",
+            "attributeName=\"fill-opacity\"",
+            "attributeName=\"stroke-dasharray\"",
+            "</circle>",
+            "</rect>",
+        ],
+    );
+    assert!(rendered(&animated) == rendered(&place.text("a.svg")));
 }
 
 #[test]
 fn circles_are_circles_in_a_dxf() {
     let place = with_picture();
-    let options = ["--width", "160mm", "-o", "a.dxf"];
-    let text = fitted(&place, &options);
-    let dxf = read(&place, "a.dxf");
+    let text = fitted(&place, "--width 160mm -o a.dxf");
+    let dxf = place.text("a.dxf");
     assert_eq!(dxf.matches("\nCIRCLE\n").count(), 2, "{dxf}");
     assert_eq!(dxf.matches("\nLWPOLYLINE\n").count(), 1, "{dxf}");
     // The radius of the disc, mm.
-    let radii: Vec<f64> = dxf
-        .split("\nAcDbCircle\n")
-        .skip(1)
-        .map(|circle| circle.split("\n40\n").nth(1).unwrap())
-        .map(|radius| radius.lines().next().unwrap().parse().unwrap())
-        .collect();
-    assert!(
-        radii.iter().any(|mm| (mm - 18.2).abs() < 0.15),
-        "{radii:?} {text}"
-    );
+    let circles = dxf.split("\nAcDbCircle\n").skip(1);
+    let radii = circles.map(|circle| circle.split("\n40\n").nth(1).unwrap());
+    let radii = radii.map(|radius| radius.lines().next().unwrap().parse().unwrap());
+    let radii: Vec<f64> = radii.collect();
+    let is_found = radii.iter().any(|mm| (mm - 18.2).abs() < 0.15);
+    assert!(is_found, "{radii:?} {text}");
 }
 
 #[test]
 fn a_shape_is_cut_out_hatched_and_outlined_like_any_area() {
     let place = with_picture();
-    let text = fitted(&place, &["--background", "none", "--opaque"]);
-    let image = |text: &str| verify::render(text, Size::Scale(1.0), Some([1.0; 3])).unwrap();
+    let text = fitted(&place, "--background none --opaque");
     for (option, least) in [
         ("--cutout", 30.0),
         ("--outline", 30.0),
         ("--hatch=3px", 18.0),
     ] {
         place.done(&["render", "a.svg", "-o", "b.svg", option]);
-        let seen =
-            strokefit::metrics::Agreement::between(&image(&read(&place, "b.svg")), &image(&text));
-        assert!(seen.unwrap().psnr_db > least, "{option}");
+        let seen = agreement(&on_white(&place.text("b.svg")), &on_white(&text));
+        assert!(seen > least, "{option}");
     }
 }

@@ -1,7 +1,6 @@
 //! Shapes and level lines: a circle, an ellipse or a rectangle in a picture comes back as one, and a level line is exactly so.
 
-use crate::support::fits::picture;
-use crate::support::repository::committed;
+use crate::support::{committed, picture, rendered};
 use strokefit::fit::{Background, Config, Fitter};
 use strokefit::scene::{Cap, Mark, Marks, Path, PathPoint, Scene, Shape, Stroke};
 use strokefit::svg::{self, Group, WriteOptions};
@@ -210,7 +209,7 @@ fn plans_come_back_as_their_things() {
     ];
     for (name, [strokes, areas, circles], least_db) in plans {
         let drawing = std::fs::read_to_string(committed(&format!("tests/data/plans/{name}.svg")));
-        let picture = verify::render(&drawing.unwrap(), Size::Scale(1.0), None).unwrap();
+        let picture = rendered(&drawing.unwrap());
         let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
         let text = fit.svg();
         let scene = svg::read(&text).unwrap();
@@ -254,7 +253,7 @@ fn square_ends_and_mitred_corners_come_back() {
         ("chart", 27, [24, 20], 46.0),
     ] {
         let drawing = std::fs::read_to_string(committed(&format!("tests/data/plans/{name}.svg")));
-        let picture = verify::render(&drawing.unwrap(), Size::Scale(1.0), None).unwrap();
+        let picture = rendered(&drawing.unwrap());
         let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
         let text = fit.svg();
         let scene = svg::read(&text).unwrap();
@@ -293,7 +292,7 @@ fn a_frame_is_a_line_with_corners_and_round_ends_stay_round() {
         background: Background::Color([1.0; 3]),
         ..Config::default()
     };
-    let picture = verify::render(&text, Size::Scale(1.0), None).unwrap();
+    let picture = rendered(&text);
     let areas = Fitter::new(only_areas).fit(&picture).unwrap().svg();
     assert!(
         !areas.contains("stroke=") && areas.contains("fill="),

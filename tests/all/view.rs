@@ -1,6 +1,5 @@
 //! The page to watch a drawing with, as browsers and others meet it.
 
-use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
@@ -8,10 +7,7 @@ use std::process::{Child, ChildStderr, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::support::engine::installed;
-use crate::support::output::stderr;
-use crate::support::place::{Place, STROKEFIT};
-use crate::support::repository::committed;
+use crate::support::{Place, STROKEFIT, committed, installed, of_strokes, stderr};
 use serde_json::Value;
 
 /// Picture that is drawn.
@@ -181,10 +177,7 @@ fn a_file_is_shown_stroke_by_stroke_and_given_back() {
     assert!(
         serde_json::from_slice::<Value>(&program.get("state?seen=1").1).unwrap()["scene"].is_null()
     );
-    assert_eq!(
-        program.get("drawing.svg").1,
-        fs::read(place.path("a.svg")).unwrap()
-    );
+    assert_eq!(program.get("drawing.svg").1, place.bytes("a.svg"));
     assert_eq!(program.get("target.png").0, 404);
     assert_eq!(program.finish(), Some(0));
 }
@@ -237,7 +230,7 @@ fn a_fit_is_seen_to_grow_and_can_be_stopped() {
     let end = program.state_with(|state| state["finished"] == true);
     let file = program.get("drawing.svg").1;
     assert_eq!(program.finish(), Some(0));
-    assert_eq!(file, fs::read(place.path("a.svg")).unwrap());
+    assert_eq!(file, place.bytes("a.svg"));
     let report = place.report("r.json");
     assert_eq!(report["stop"], "interrupted");
     assert_eq!(report["strokes"], strokes(&end));
@@ -256,7 +249,7 @@ fn strokes_can_be_added_while_it_runs_and_after() {
     program.state_with(seen(120));
     let file = program.get("drawing.svg").1;
     assert_eq!(program.finish(), Some(0));
-    assert_eq!(file, fs::read(place.path("a.svg")).unwrap());
+    assert_eq!(file, place.bytes("a.svg"));
 }
 
 #[test]
@@ -268,20 +261,17 @@ fn watching_changes_no_byte() {
     let program = Program::start(&place, &[&args[..], &["b.svg", "--view"]].concat());
     program.state_with(|state| state["finished"] == true);
     assert_eq!(program.finish(), Some(0));
-    let read = |name| fs::read(place.path(name)).unwrap();
+    let read = |name| place.bytes(name);
     assert!(read("a.svg") == read("b.svg"));
 }
 
 #[test]
 fn nobody_looks_at_a_fit_that_nobody_watches() {
-    use strokefit::fit::{Budget, Config, Fitter};
+    use strokefit::fit::{Config, Fitter};
     let picture = strokefit::image::Image::open(sample()).unwrap();
     let viewer = strokefit::view::Viewer::open().unwrap();
     viewer.begin("", Some(&picture)).unwrap();
-    let budget = Budget {
-        strokes: Some(50),
-        ..Budget::default()
-    };
+    let budget = of_strokes(50);
     let config = Config {
         budget,
         ..Config::default()
@@ -338,7 +328,7 @@ fn text<'a>(dom: &'a str, id: &str) -> &'a str {
 #[test]
 fn chromium_shows_strokes_stages_and_fidelity() {
     let place = drawn();
-    let svg = fs::read_to_string(place.path("a.svg")).unwrap();
+    let svg = place.text("a.svg");
     let program = Program::start(&place, &["view", "a.svg", &sample()]);
     let Some(dom) = page(&program, "") else {
         return;
@@ -396,7 +386,7 @@ fn a_drawing_and_a_picture_of_another_shape_are_refused() {
     let place = drawn();
     let square = image::RgbImage::new(20, 20);
     square.save(place.path("square.png")).unwrap();
-    let output = place.run(&["view", "a.svg", "square.png"]);
+    let output = place.run("view a.svg square.png");
     assert_eq!(output.status.code(), Some(1));
     assert!(stderr(&output).contains("aspect"));
 }

@@ -1,14 +1,19 @@
-//! Samples, and what the library makes of pictures.
+//! Samples, what the library makes of pictures, and how that looks.
 
 use std::path::Path;
 
-use strokefit::fit::{Config, Fit, Fitter};
+use strokefit::fit::{Budget, Config, Fit, Fitter, Preset};
 use strokefit::image::Image;
+use strokefit::metrics::Agreement;
+use strokefit::verify::{self, Size};
 
-use super::repository::committed;
+/// The whole path of a file that is committed as `path`.
+pub(crate) fn committed(path: &str) -> String {
+    format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))
+}
 
 pub(crate) fn sample(name: &str) -> Image {
-    Image::open(committed(&format!("samples/{name}.png"))).unwrap()
+    picture(&format!("{name}.png"))
 }
 
 /// A picture of the samples or of the tests, by its file name.
@@ -20,6 +25,58 @@ pub(crate) fn picture(name: &str) -> Image {
     Image::open(files.find(|path| Path::new(path).exists()).unwrap()).unwrap()
 }
 
+pub(crate) fn of_strokes(strokes: usize) -> Budget {
+    Budget {
+        strokes: Some(strokes),
+        ..Budget::default()
+    }
+}
+
+pub(crate) fn of_bytes(bytes: usize) -> Budget {
+    Budget {
+        bytes: Some(bytes),
+        ..Budget::default()
+    }
+}
+
+pub(crate) fn of_psnr(db: f64) -> Budget {
+    Budget {
+        psnr_db: Some(db),
+        ..Budget::default()
+    }
+}
+
+/// The default of a drawing within `budget`.
+pub(crate) fn within(budget: Budget) -> Config {
+    Config {
+        budget,
+        ..Config::default()
+    }
+}
+
+/// The draft of a drawing of at most `strokes` strokes.
+pub(crate) fn draft(strokes: usize) -> Config {
+    Config {
+        preset: Preset::Draft,
+        ..within(of_strokes(strokes))
+    }
+}
+
 pub(crate) fn drawn(picture: &Image, config: &Config) -> Fit {
     Fitter::new(config.clone()).fit(picture).unwrap()
+}
+
+/// An SVG at its own size.
+pub(crate) fn rendered(svg: &str) -> Image {
+    verify::render(svg, Size::Scale(1.0), None).unwrap()
+}
+
+/// An SVG on white paper.
+pub(crate) fn on_white(svg: &str) -> Image {
+    verify::render(svg, Size::Scale(1.0), Some([1.0; 3])).unwrap()
+}
+
+/// Agreement of two renders, dB.
+pub(crate) fn agreement(a: &Image, b: &Image) -> f64 {
+    Agreement::between(a, b).unwrap().psnr_db
 }
