@@ -1,57 +1,25 @@
 //! Budgets hold, and no drawing has a hole: what cases of users showed.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
+use crate::support::{
+    self, Place, assert_says, committed, of_bytes, of_psnr, of_strokes, sample, within,
+};
 use strokefit::fit::{Base, Budget, Config, ErrorWeighting, Fit, Fitter, Preset, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::report::Judged;
 
-fn path(name: &str) -> PathBuf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = ["samples", "tests/data/pictures"];
-    let files = folders.map(|folder| root.join(folder).join(format!("{name}.png")));
-    files.into_iter().find(|path| path.exists()).unwrap()
-}
-
-fn picture(name: &str) -> Image {
-    Image::open(path(name)).unwrap()
-}
-
-fn of_bytes(bytes: usize) -> Budget {
-    Budget {
-        bytes: Some(bytes),
-        ..Budget::default()
-    }
-}
-
-fn of_psnr(db: f64) -> Budget {
-    Budget {
-        psnr_db: Some(db),
-        ..Budget::default()
-    }
-}
-
-fn of_strokes(strokes: usize) -> Budget {
-    Budget {
-        strokes: Some(strokes),
-        ..Budget::default()
-    }
-}
-
 fn drawn(picture: &Image, budget: Budget, preset: Preset) -> Fit {
     let config = Config {
-        budget,
         preset,
         look: Some(ErrorWeighting::Exact),
-        ..Config::default()
+        ..within(budget)
     };
-    Fitter::new(config).fit(picture).unwrap()
+    support::drawn(picture, &config)
 }
 
 fn judged(name: &str, budget: Budget) -> Judged {
-    judged_of(&picture(name), budget)
+    judged_of(&sample(name), budget)
 }
 
 fn judged_of(picture: &Image, budget: Budget) -> Judged {
@@ -60,7 +28,7 @@ fn judged_of(picture: &Image, budget: Budget) -> Judged {
 
 /// A picture of 250 px at most: larger ones take more time and show no more.
 fn small(name: &str) -> Image {
-    let picture = picture(name);
+    let picture = sample(name);
     if picture.width() > 250 {
         picture.halved()
     } else {
@@ -110,13 +78,12 @@ fn a_budget_that_what_pays_keeps_draws_as_well() {
 
 #[test]
 fn a_drawing_is_shortened_to_the_bytes_asked_for() {
-    let picture = picture("cartoon");
+    let picture = sample("cartoon");
     let drawing = judged("cartoon", Budget::default());
     let base = Base::read(drawing.svg.clone(), &picture, false).unwrap();
     let config = Config {
-        budget: of_bytes(drawing.svg.len() - 200),
         look: Some(ErrorWeighting::Exact),
-        ..Config::default()
+        ..within(of_bytes(drawing.svg.len() - 200))
     };
     let fit = Fitter::new(config).on(base).fit(&picture).unwrap();
     let shorter = Judged::new(fit).unwrap();
@@ -140,7 +107,7 @@ fn every_budget_of_bytes_is_kept_without_a_hole() {
 
 #[test]
 fn a_fit_that_is_stopped_keeps_its_bytes() {
-    let picture = picture("cartoon");
+    let picture = sample("cartoon");
     for last in [1, 60, 400, 900] {
         let mut calls = 0;
         let mut observer = |_: &Progress<'_>| {
@@ -151,12 +118,8 @@ fn a_fit_that_is_stopped_keeps_its_bytes() {
                 ControlFlow::Break(())
             }
         };
-        let config = Config {
-            budget: of_bytes(1200),
-            ..Config::default()
-        };
-        let fit = Fitter::new(config).observer(&mut observer).fit(&picture);
-        let fit = fit.unwrap();
+        let fitter = Fitter::new(within(of_bytes(1200))).observer(&mut observer);
+        let fit = fitter.fit(&picture).unwrap();
         assert_eq!(fit.stop, Stop::Interrupted, "{last}");
         assert!(fit.svg().len() <= 1200, "{last}: {}", fit.svg().len());
     }
@@ -206,10 +169,8 @@ fn a_fidelity_beyond_reach_ends_the_search() {
 fn a_longer_fit_of_few_strokes_is_never_worse() {
     for name in ["cartoon", "heart", "gasket"] {
         let picture = small(name);
-        let db = |preset| {
-            let fit = drawn(&picture, of_strokes(8), preset);
-            Judged::new(fit).unwrap().verdict.fidelity.psnr_db
-        };
+        let fit = |preset| drawn(&picture, of_strokes(8), preset);
+        let db = |preset| db(&Judged::new(fit(preset)).unwrap());
         let [draft, balanced, best] = [Preset::Draft, Preset::Balanced, Preset::Best].map(db);
         assert!(
             draft <= balanced && balanced <= best,
@@ -220,7 +181,9 @@ fn a_longer_fit_of_few_strokes_is_never_worse() {
 
 #[test]
 fn an_enlarged_picture_gets_about_the_same_drawing() {
-    let pixels = image::open(path("coffee-300")).unwrap().to_rgb8();
+    let pixels = image::open(committed("samples/coffee-300.png"))
+        .unwrap()
+        .to_rgb8();
     let strokes = |times: u32| {
         let [width, height] = [times * pixels.width(), times * pixels.height()];
         let smooth = image::imageops::FilterType::CatmullRom;
@@ -233,38 +196,19 @@ fn an_enlarged_picture_gets_about_the_same_drawing() {
     assert!(many.abs_diff(few) * 4 <= few, "{few} {many}");
 }
 
-/// Runs the program; gives its status and what it says.
-fn run(name: &str, options: &[&str]) -> (Option<i32>, String) {
-    let folder = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_strokefit"))
-        .arg("fit")
-        .arg(path(name))
-        .arg("-o")
-        .arg(folder.path().join("out.svg"))
-        .args(options)
-        .output()
-        .unwrap();
-    (
-        output.status.code(),
-        String::from_utf8(output.stderr).unwrap(),
-    )
-}
-
 #[test]
-fn bytes_too_few_for_a_stroke_are_said() {
-    let (status, said) = run("heart", &["--bytes", "300"]);
-    assert_eq!(status, Some(3), "{said}");
-    assert!(said.contains("no stroke fits in 300 bytes"), "{said}");
-}
-
-#[test]
-fn a_picture_of_nine_pixels_is_drawn() {
-    assert_eq!(run("s3x3", &[]).0, Some(0));
-}
-
-#[test]
-fn a_dithered_picture_is_drawn_with_a_hint() {
-    let (status, said) = run("dither", &["--preset", "draft"]);
-    assert_eq!(status, Some(0), "{said}");
-    assert!(said.contains("dots or noise finer than strokes"), "{said}");
+fn what_a_picture_or_a_budget_is_not_made_for_is_said() {
+    for (picture, options, status, words) in [
+        ("heart", "--bytes 300", 3, "no stroke fits in 300 bytes"),
+        ("s3x3", "", 0, ""),
+        (
+            "dither",
+            "--preset draft",
+            0,
+            "dots or noise finer than strokes",
+        ),
+    ] {
+        let fit = format!("fit @tests/data/pictures/{picture}.png -o out.svg {options}");
+        assert_says(&Place::new().said(&fit, status), &[words]);
+    }
 }

@@ -415,7 +415,7 @@ fn the_look_is_as_asked_for() {
         ));
         place.text("out.svg")
     };
-    assert!(!fit("--opaque").contains("stroke-opacity"));
+    assert!(!fit("--opaque").contains("-opacity"));
     assert!(!fit("--background none").contains("<rect"));
     assert!(fit("--background #0a0b0c").contains("fill=\"#0a0b0c\""));
     let staged = fit("--stages 3 --no-polish");

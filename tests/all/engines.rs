@@ -4,16 +4,16 @@
 //! `STROKEFIT_ENGINES=inkscape,rsvg` names programs that must be there: a test without them fails.
 
 use std::fs;
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Duration;
 
 use crate::support::{
-    Place, STROKEFIT, committed, entry, installed, of_strokes, on_white, record, stderr,
+    Place, STROKEFIT, Words, committed, drawn, entry, installed, of_strokes, on_white, record,
+    sample, stderr, within,
 };
 use serde_json::Value;
 use strokefit::engines::{DrawRequest, Engine};
-use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
 use strokefit::math;
 use strokefit::metrics;
@@ -53,40 +53,21 @@ fn draws_fits_as_faithfully_as_resvg(name: &str) {
         return;
     }
     for (svg, picture) in [
-        ("docs/pictures/chelsea-cat.svg", "samples/chelsea-cat.png"),
-        (
-            "docs/pictures/coffee-quality-35.svg",
-            "samples/coffee-300.png",
-        ),
-        (
-            "docs/pictures/noto-hibiscus.svg",
-            "samples/noto-hibiscus.png",
-        ),
+        ("chelsea-cat", "chelsea-cat"),
+        ("coffee-quality-35", "coffee-300"),
+        ("noto-hibiscus", "noto-hibiscus"),
     ] {
-        let args = [
-            "check",
-            &committed(svg),
-            &committed(picture),
-            "--renderer",
-            name,
-            "--report",
-            "-",
-        ];
-        let record = record(&Place::new().done(&args));
+        let files = format!("@docs/pictures/{svg}.svg @samples/{picture}.png");
+        let check = Place::new().done(&format!("check {files} --renderer {name} --report -"));
+        let record = record(&check);
         let (resvg, other) = (entry(&record, "resvg"), entry(&record, name));
-        let db = |entry: &Value| entry["fidelity"]["psnr_db"].as_f64().unwrap();
-        assert!(db(other) >= db(resvg) - 0.7, "{svg}: {record}");
+        let db = |field: &Value| field["psnr_db"].as_f64().unwrap();
+        let least = db(&resvg["fidelity"]) - 0.7;
+        assert!(db(&other["fidelity"]) >= least, "{svg}: {record}");
         // Programs differ along edges. The cup has the edges of 1,300 strokes on 300×200 px.
-        assert!(
-            other["against_resvg"]["psnr_db"].as_f64().unwrap() > 39.0,
-            "{svg}: {record}"
-        );
-        assert!(
-            other["version"]
-                .as_str()
-                .unwrap()
-                .starts_with(|c: char| c.is_ascii_digit())
-        );
+        assert!(db(&other["against_resvg"]) > 39.0, "{svg}: {record}");
+        let version = other["version"].as_str().unwrap();
+        assert!(version.starts_with(|c: char| c.is_ascii_digit()));
     }
 }
 
@@ -116,23 +97,17 @@ fn fits() -> &'static [Fitted] {
 }
 
 fn fitted(name: &'static str, strokes: usize, least_db: f64) -> Fitted {
-    let picture = Image::open(committed(&format!("samples/{name}.png"))).unwrap();
-    let budget = of_strokes(strokes);
-    let config = Config {
-        budget,
-        ..Config::default()
-    };
-    let fit = Fitter::new(config).fit(&picture).unwrap();
+    let picture = sample(name);
     Fitted {
         name,
-        text: fit.svg(),
+        text: drawn(&picture, &within(of_strokes(strokes))).svg(),
         target: picture.flattened([1.0; 3]),
         least_db,
     }
 }
 
 fn draws_fits_of_many_strokes_as_faithfully_as_resvg(name: &str) {
-    let Some((engine, program)) = installed(name) else {
+    let Some(engine) = InstalledEngine::named(name) else {
         return;
     };
     for Fitted {
@@ -140,15 +115,9 @@ fn draws_fits_of_many_strokes_as_faithfully_as_resvg(name: &str) {
         text,
         target,
         least_db,
-        ..
     } in fits()
     {
-        let request = DrawRequest {
-            svg: text,
-            width: target.width(),
-            height: target.height(),
-        };
-        let drawn = engine.draw(&program, request, PATIENCE).unwrap().image;
+        let drawn = engine.drawn(text, [target.width(), target.height()]);
         let resvg = verify::fidelity(text, target).unwrap().psnr_db;
         let db = metrics::psnr(target, &drawn).unwrap();
         assert!(resvg > *least_db, "{name}: {resvg:.2} dB");
@@ -187,10 +156,21 @@ fn bent(points: &[(f32, f32, bool)], closed: bool, width: f32, opacity: f32) -> 
     }
 }
 
+/// A page of 64×48 px with these strokes.
+fn page(strokes: Vec<Stroke>) -> Scene {
+    Scene {
+        stages: vec![Stage::from_iter(strokes)],
+        ..Scene::empty(64, 48, Some(PAGE))
+    }
+}
+
+const PAGE: [f32; 3] = [1.0, 0.9, 0.7];
+
+const ON: bool = true;
+const OFF: bool = false;
+
 /// Paths that bend, turn back, close and cross themselves.
 fn bent_kinds() -> Vec<(&'static str, Vec<Stroke>)> {
-    const ON: bool = true;
-    const OFF: bool = false;
     let corners = [
         (8.0, 8.0, ON),
         (50.0, 12.0, ON),
@@ -244,10 +224,6 @@ fn bent_kinds() -> Vec<(&'static str, Vec<Stroke>)> {
 
 /// Kinds of strokes that programs might treat apart, each a drawing of its own, 64×48 px.
 fn kinds() -> Vec<(&'static str, Scene)> {
-    let of = |strokes: Vec<Stroke>| Scene {
-        stages: vec![Stage::from_iter(strokes)],
-        ..Scene::empty(64, 48, Some([1.0, 0.9, 0.7]))
-    };
     let fan = |width: f32| {
         let end = |i: usize| (i as f32 * 0.26).sin_cos();
         (0..12).map(move |i| {
@@ -266,20 +242,19 @@ fn kinds() -> Vec<(&'static str, Scene)> {
         })
     };
     let faint = |strokes: Vec<Stroke>| strokes.into_iter().map(|s| Stroke { opacity: 0.2, ..s });
-    let bent = bent_kinds()
-        .into_iter()
-        .map(|(kind, strokes)| (kind, of(strokes)));
+    let bent = bent_kinds().into_iter();
+    let bent = bent.map(|(kind, strokes)| (kind, page(strokes)));
     let mut kinds = vec![
-        ("large dots", of(grid(4.6).collect())),
-        ("smallest dots", of(grid(1.02).collect())),
-        ("thinnest strokes", of(fan(1.02).collect())),
+        ("large dots", page(grid(4.6).collect())),
+        ("smallest dots", page(grid(1.02).collect())),
+        ("thinnest strokes", page(fan(1.02).collect())),
         (
             "faint thin strokes",
-            of(faint(fan(1.02).collect()).collect()),
+            page(faint(fan(1.02).collect()).collect()),
         ),
         (
             "partly off the page",
-            of(vec![
+            page(vec![
                 capsule([-30.0, 10.0], [10.0, 10.0], 9.0),
                 capsule([60.0, -9.0], [90.0, 30.0], 5.0),
                 capsule([20.0, 48.0], [44.0, 48.0], 3.0),
@@ -288,17 +263,19 @@ fn kinds() -> Vec<(&'static str, Scene)> {
         ),
         (
             "covered",
-            of(fan(2.0)
-                .chain([capsule([0.0, 24.0], [64.0, 24.0], 90.0)])
-                .collect()),
+            page(
+                fan(2.0)
+                    .chain([capsule([0.0, 24.0], [64.0, 24.0], 90.0)])
+                    .collect(),
+            ),
         ),
         (
             "shorter than wide",
-            of(vec![capsule([30.0, 20.0], [30.4, 20.2], 25.0)]),
+            page(vec![capsule([30.0, 20.0], [30.4, 20.2], 25.0)]),
         ),
         (
             "many faint layers",
-            of(vec![
+            page(vec![
                 Stroke {
                     opacity: 0.15,
                     ..capsule([20.0, 20.0], [44.0, 28.0], 20.0)
@@ -308,68 +285,63 @@ fn kinds() -> Vec<(&'static str, Scene)> {
         ),
     ];
     kinds.extend(bent);
-    kinds.push(("bands", bands()));
+    kinds.push(("bands", page(bands())));
     kinds
 }
 
 /// Lines with square ends and mitred corners, one of them closed, one bent, one translucent.
-fn bands() -> Scene {
-    let on = |x: f32, y: f32| PathPoint::on(math::point([x, y]));
-    let off = |x: f32, y: f32| PathPoint::off(math::point([x, y]));
-    let lines = [
-        (vec![on(5.0, 6.5), on(25.0, 6.5)], false, 5.0, 1.0),
-        (
-            vec![on(8.0, 40.0), on(18.0, 18.0), on(30.0, 42.0)],
-            false,
-            4.0,
-            1.0,
-        ),
-        (
-            vec![on(36.0, 8.0), on(58.0, 8.0), on(50.0, 24.0)],
-            true,
-            3.0,
-            0.5,
-        ),
-        (
-            vec![
-                on(36.0, 40.0),
-                off(40.0, 31.0),
-                off(50.0, 30.0),
-                on(60.0, 38.0),
-            ],
-            false,
-            6.0,
-            1.0,
-        ),
+fn bands() -> Vec<Stroke> {
+    let line = [(5.0, 6.5, ON), (25.0, 6.5, ON)];
+    let corner = [(8.0, 40.0, ON), (18.0, 18.0, ON), (30.0, 42.0, ON)];
+    let closed = [(36.0, 8.0, ON), (58.0, 8.0, ON), (50.0, 24.0, ON)];
+    let wave = [
+        (36.0, 40.0, ON),
+        (40.0, 31.0, OFF),
+        (50.0, 30.0, OFF),
+        (60.0, 38.0, ON),
     ];
-    let band = |(points, closed, width, opacity)| Stroke {
-        path: scene::Path::new(points, closed).unwrap(),
-        radius: 0.5 * width,
+    let bands = [
+        bent(&line, false, 5.0, 1.0),
+        bent(&corner, false, 4.0, 1.0),
+        bent(&closed, true, 3.0, 0.5),
+        bent(&wave, false, 6.0, 1.0),
+    ];
+    let band = |stroke| Stroke {
         cap: Cap::Butt,
         color: [0.1, 0.3, 0.5],
-        opacity,
+        ..stroke
     };
-    Scene {
-        stages: vec![lines.map(band).into_iter().collect()],
-        ..Scene::empty(64, 48, Some([1.0, 0.9, 0.7]))
-    }
+    bands.map(band).into()
 }
 
-/// Renders of `svg` at this size, by the engine and by resvg.
-fn drawn_by_both(
-    engine: &Engine,
-    program: &Path,
-    svg: &str,
-    [width, height]: [u32; 2],
-) -> [Image; 2] {
-    let request = DrawRequest {
-        svg,
-        width: width as usize,
-        height: height as usize,
-    };
-    let drawn = engine.draw(program, request, PATIENCE).unwrap().image;
-    let resvg = verify::render(svg, Size::Exact { width, height }, Some([1.0; 3])).unwrap();
-    [drawn, resvg]
+/// A program that is installed.
+struct InstalledEngine(&'static Engine, PathBuf);
+
+impl InstalledEngine {
+    /// `None`, with the test reported as skipped, where it is not installed.
+    fn named(name: &str) -> Option<Self> {
+        installed(name).map(|(engine, program)| Self(engine, program))
+    }
+
+    fn drawn(&self, svg: &str, [width, height]: [usize; 2]) -> Image {
+        let request = DrawRequest { svg, width, height };
+        self.0.draw(&self.1, request, PATIENCE).unwrap().image
+    }
+
+    /// Renders of `svg` at this size, by the program and by resvg; they differ by `least_db` at least.
+    #[track_caller]
+    fn draws_alike(&self, what: &str, svg: &str, size: [u32; 2], least_db: f64) -> [Image; 2] {
+        let [width, height] = size;
+        let drawn = self.drawn(svg, size.map(|side| side as usize));
+        let resvg = verify::render(svg, Size::Exact { width, height }, Some([1.0; 3])).unwrap();
+        let db = metrics::psnr(&resvg, &drawn).unwrap();
+        assert!(
+            db >= least_db,
+            "{}, {what}: {db:.2} dB from resvg",
+            self.0.name
+        );
+        [drawn, resvg]
+    }
 }
 
 /// Gradients of both kinds, of colour and of opacity, are drawn alike.
@@ -394,7 +366,7 @@ fn shades_are_drawn_alike() {
         radius: 25.25,
     };
     for name in ["inkscape", "rsvg", "chromium", "cairosvg"] {
-        let Some((engine, program)) = installed(name) else {
+        let Some(engine) = InstalledEngine::named(name) else {
             continue;
         };
         for axis in [linear, radial] {
@@ -403,41 +375,34 @@ fn shades_are_drawn_alike() {
                 ..Scene::empty(64, 48, None)
             };
             let text = svg::write(&scene, &WriteOptions::default());
-            let [drawn, resvg] = drawn_by_both(engine, &program, &text, [64, 48]);
-            let db = metrics::psnr(&resvg, &drawn).unwrap();
-            assert!(db >= 48.0, "{name}, {axis:?}: {db:.2} dB from resvg");
+            engine.draws_alike(&format!("{axis:?}"), &text, [64, 48], 48.0);
         }
     }
 }
 
 fn draws_every_kind_of_stroke(name: &str) {
-    let Some((engine, program)) = installed(name) else {
+    let Some(engine) = InstalledEngine::named(name) else {
         return;
     };
+    let background = Image::filled(64, 48, PAGE).unwrap();
+    let ink = |image: &Image| metrics::l1(&background, image).unwrap();
     for (kind, scene) in kinds() {
         let text = svg::write(&scene, &WriteOptions::default());
-        let [drawn, resvg] = drawn_by_both(engine, &program, &text, [64, 48]);
-        let db = metrics::psnr(&resvg, &drawn).unwrap();
-        assert!(db >= 36.0, "{kind}: {db:.2} dB from resvg");
-        let background = Image::filled(64, 48, [1.0, 0.9, 0.7]).unwrap();
-        let ink = |image| metrics::l1(&background, image).unwrap();
+        let [drawn, resvg] = engine.draws_alike(kind, &text, [64, 48], 36.0);
         let ratio = ink(&drawn) / ink(&resvg);
-        assert!(
-            (0.95..1.05).contains(&ratio),
-            "{kind}: {ratio:.3} × the ink of resvg"
-        );
+        let is_alike = (0.95..1.05).contains(&ratio);
+        assert!(is_alike, "{kind}: {ratio:.3} × the ink of resvg");
     }
 }
 
 fn draws_every_form_of_file(name: &str) {
-    let Some((engine, program)) = installed(name) else {
+    let Some(engine) = InstalledEngine::named(name) else {
         return;
     };
     let layers = kinds().into_iter().filter(|(kind, _)| *kind != "covered");
-    let stages = layers.flat_map(|(_, scene)| scene.stages).collect();
     let scene = Scene {
-        stages,
-        ..Scene::empty(64, 48, Some([1.0, 0.9, 0.7]))
+        stages: layers.flat_map(|(_, scene)| scene.stages).collect(),
+        ..Scene::empty(64, 48, Some(PAGE))
     };
     for form in Form::ALL {
         let options = WriteOptions {
@@ -445,14 +410,12 @@ fn draws_every_form_of_file(name: &str) {
             ..WriteOptions::default()
         };
         let text = svg::write(&scene, &options);
-        let [drawn, resvg] = drawn_by_both(engine, &program, &text, [64, 48]);
-        let db = metrics::psnr(&resvg, &drawn).unwrap();
-        assert!(db >= 36.0, "{form:?}: {db:.2} dB from resvg");
+        engine.draws_alike(&format!("{form:?}"), &text, [64, 48], 36.0);
     }
 }
 
 fn scales_to_the_size_asked_for(name: &str) {
-    let Some((engine, program)) = installed(name) else {
+    let Some(engine) = InstalledEngine::named(name) else {
         return;
     };
     // Without a background: the page is white.
@@ -461,10 +424,8 @@ fn scales_to_the_size_asked_for(name: &str) {
         ..kinds().swap_remove(4).1
     };
     let text = svg::write(&scene, &WriteOptions::default());
-    for [width, height] in [[32, 24], [64, 48], [640, 480]] {
-        let [drawn, resvg] = drawn_by_both(engine, &program, &text, [width, height]);
-        let db = metrics::psnr(&resvg, &drawn).unwrap();
-        assert!(db >= 36.0, "{width}×{height}: {db:.2} dB from resvg");
+    for size in [[32, 24], [64, 48], [640, 480]] {
+        engine.draws_alike(&format!("{size:?}"), &text, size, 36.0);
     }
 }
 
@@ -474,44 +435,36 @@ fn leaves_nothing_in_the_home(name: &str) {
         return;
     };
     let (home, temporary) = (Place::new(), Place::new());
-    let file = committed("docs/pictures/noto-hibiscus.svg");
+    let args = format!(
+        "check @docs/pictures/noto-hibiscus.svg --renderer {}",
+        engine.name
+    );
     let output = home
         .command(STROKEFIT)
-        .args(["check", &file, "--renderer", engine.name])
+        .args(args.words())
         .env("HOME", home.path("."))
         .env("TMPDIR", temporary.path("."))
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    for folder in [&home, &temporary] {
-        let left: Vec<_> = fs::read_dir(folder.path("."))
-            .unwrap()
-            .map(|e| e.unwrap().path())
-            .collect();
-        assert!(left.is_empty(), "{left:?}");
-    }
+    assert_eq!([home.names(), temporary.names()], [[""; 0]; 2]);
 }
 
-/// The file as Inkscape saves it, plain or with its own elements.
+/// The file as Inkscape saves it to `saved.svg`, plain or with its own elements.
 fn saved_by_inkscape(place: &Place, file: &str, plain: bool) -> String {
     let (_, program) = installed("inkscape").unwrap();
-    let saved = place.path("saved.svg");
-    let mut command = place.command(program);
-    command.arg(if plain {
-        "--export-plain-svg"
-    } else {
-        "--export-type=svg"
-    });
-    command
-        .arg(format!("--export-filename={}", saved.display()))
-        .arg(file);
-    command
+    let kind = ["--export-type=svg", "--export-plain-svg"][usize::from(plain)];
+    let args = format!("{kind} --export-filename=saved.svg {file}");
+    let output = place
+        .command(program)
+        .args(args.words())
         .env("HOME", place.path("."))
         .env("INKSCAPE_PROFILE_DIR", place.path("."))
-        .env_remove("DISPLAY");
-    let output = command.output().unwrap();
+        .env_remove("DISPLAY")
+        .output()
+        .unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
-    fs::read_to_string(saved).unwrap()
+    place.text("saved.svg")
 }
 
 #[test]
@@ -537,26 +490,19 @@ fn a_round_trip_through_inkscape_keeps_the_drawing_and_its_layers() {
 #[track_caller]
 fn survives_inkscape(original: &str, plain: bool) {
     let place = Place::new();
-    let file = place.path("original.svg");
-    fs::write(&file, original).unwrap();
-    let saved = saved_by_inkscape(&place, file.to_str().unwrap(), plain);
+    place.file("original.svg", original);
+    let saved = saved_by_inkscape(&place, "original.svg", plain);
     assert_ne!(saved, original);
-    let render = |text: &str| on_white(text);
-    let db = metrics::psnr(&render(original), &render(&saved)).unwrap();
+    let db = metrics::psnr(&on_white(original), &on_white(&saved)).unwrap();
     assert!(db >= 45.0, "plain {plain}: {db:.2} dB");
     let count = |text: &str, word| text.matches(word).count();
     for word in ["<path", "id=\"stage-"] {
         assert_eq!(count(&saved, word), count(original, word));
     }
-    let layers = if plain {
-        0
-    } else {
-        count(original, "groupmode")
-    };
+    let layers = count(original, "groupmode") * usize::from(!plain);
     assert_eq!(count(&saved, "inkscape:groupmode=\"layer\""), layers);
-    let worst = svg::lint(&saved)
-        .into_iter()
-        .find(|f| f.severity < svg::Severity::Note);
+    let mut findings = svg::lint(&saved).into_iter();
+    let worst = findings.find(|f| f.severity < svg::Severity::Note);
     assert_eq!(worst, None);
 }
 
@@ -566,26 +512,20 @@ fn what_inkscape_saved_is_refined() {
         return;
     }
     let place = Place::new();
-    let (file, picture) = (
-        committed("docs/pictures/coffee-quality-20.svg"),
-        committed("samples/coffee-300.png"),
-    );
+    let target = sample("coffee-300");
+    let db = |text: &str| verify::fidelity(text, &target).unwrap().psnr_db;
     for plain in [true, false] {
-        let saved = saved_by_inkscape(&place, &file, plain);
-        let refine = ["refine", "saved.svg", &picture, "-o", "better.svg"];
-        let budget = ["--strokes", "300", "--preset", "draft"];
-        place.done(&[&refine[..], &budget].concat());
+        let saved = saved_by_inkscape(&place, "@docs/pictures/coffee-quality-20.svg", plain);
+        let files = "saved.svg @samples/coffee-300.png -o better.svg";
+        place.done(&format!("refine {files} --strokes 300 --preset draft"));
         let better = place.text("better.svg");
-        let target = Image::open(&picture).unwrap();
-        let db = |text: &str| verify::fidelity(text, &target).unwrap().psnr_db;
         let (before, after) = (db(&saved), db(&better));
         assert!(
             after > before + 1.0,
-            "plain {plain}: {before:.2} dB, then {after:.2} dB"
+            "plain {plain}: {before:.2} dB, then {after:.2}"
         );
         assert!(better.matches("<path").count() > saved.matches("<path").count());
-        let check = ["check", "better.svg", &picture, "--renderer", "inkscape"];
-        place.done(&check);
+        place.done("check better.svg @samples/coffee-300.png --renderer inkscape");
     }
 }
 
@@ -594,11 +534,9 @@ fn draws_what_inkscape_saved(name: &str) {
         return;
     }
     let place = Place::new();
-    let file = committed("docs/pictures/chelsea-cat.svg");
     for plain in [true, false] {
-        saved_by_inkscape(&place, &file, plain);
-        let picture = committed("samples/chelsea-cat.png");
-        let args = ["check", "saved.svg", &picture, "--renderer", name];
-        place.done(&args);
+        saved_by_inkscape(&place, "@docs/pictures/chelsea-cat.svg", plain);
+        let check = format!("check saved.svg @samples/chelsea-cat.png --renderer {name}");
+        place.done(&check);
     }
 }

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use crate::support::{draft, drawn, of_bytes, of_psnr, of_strokes, sample};
+use crate::support::{draft, drawn, of_bytes, of_psnr, of_strokes, on_white, sample, within};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
     Budget, CancelToken, Config, Fit, Fitter, Preset, Progress, Rates, Recipe, Stop,
@@ -17,29 +17,23 @@ use strokefit::verify::{self, Verdict};
 /// Agreement that every drawing has to have, dB.
 const AGREEMENT_DB: f64 = 36.0;
 
-fn text(fit: &Fit, config: &Config) -> String {
-    svg::write(&fit.scene, &config.file)
-}
-
-fn verdict(fit: &Fit, config: &Config) -> Verdict {
-    verify::verify(&text(fit, config), &fit.target, &fit.soft).unwrap()
+fn verdict(fit: &Fit) -> Verdict {
+    verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap()
 }
 
 /// A smooth ramp with a dark disc.
-fn ball(width: usize, height: usize) -> Image {
-    let plane = |c: usize| {
-        let value = |i: usize| {
-            let (x, y) = ((i % width) as f32, (i / width) as f32);
-            let away = (x - 30.0).hypot(y - 24.0);
-            if away < 14.0 {
-                0.1 * c as f32 + away / 40.0
-            } else {
-                0.5 + 0.4 * x / width as f32
-            }
-        };
-        (0..width * height).map(value).collect()
+fn ball() -> Image {
+    let (width, height) = (64, 48);
+    let level = |x: usize, y: usize, c: usize| {
+        let (x, y) = (x as f32, y as f32);
+        let away = (x - 30.0).hypot(y - 24.0);
+        if away < 14.0 {
+            0.1 * c as f32 + away / 40.0
+        } else {
+            0.5 + 0.4 * x / width as f32
+        }
     };
-    Image::new(width, height, [plane(0), plane(1), plane(2)]).unwrap()
+    Image::from_fn(width, height, 3, level).unwrap()
 }
 
 #[test]
@@ -53,7 +47,7 @@ fn samples_are_drawn_as_they_were_fitted() {
     ] {
         let config = draft(strokes);
         let fit = drawn(&sample(name), &config);
-        let verdict = verdict(&fit, &config);
+        let verdict = verdict(&fit);
         assert_eq!(fit.scene.len(), strokes, "{name}");
         assert!(
             verdict.agreement.psnr_db > AGREEMENT_DB,
@@ -65,7 +59,7 @@ fn samples_are_drawn_as_they_were_fitted() {
 
 #[test]
 fn every_coverage_function_ends_in_a_drawing_that_renderers_agree_on() {
-    let picture = ball(64, 48);
+    let picture = ball();
     for word in [
         "smoothstep",
         "sigmoid",
@@ -81,53 +75,42 @@ fn every_coverage_function_ends_in_a_drawing_that_renderers_agree_on() {
             ..draft(40)
         };
         let fit = drawn(&picture, &config);
-        let verdict = verdict(&fit, &config);
+        let verdict = verdict(&fit);
         assert!(verdict.fidelity.psnr_db > 26.0, "{word}: {verdict:?}");
     }
 }
 
 #[test]
 fn a_fidelity_is_met_by_few_strokes() {
-    let picture = sample("coffee-300");
     let config = Config {
-        budget: of_psnr(25.0),
         preset: Preset::Draft,
-        ..Config::default()
+        ..within(of_psnr(25.0))
     };
-    let fit = drawn(&picture, &config);
-    let reached = verdict(&fit, &config).fidelity.psnr_db;
+    let fit = drawn(&sample("coffee-300"), &config);
+    let reached = verdict(&fit).fidelity.psnr_db;
     assert_eq!(fit.stop, Stop::Psnr);
     assert!((25.0..26.0).contains(&reached), "{reached} dB");
 }
 
 #[test]
 fn a_disc_without_antialiasing_reaches_the_fidelity_that_is_asked_for() {
-    let shade = |x: usize, y: usize| {
+    let level = |x: usize, y: usize, _| {
         let away2 = (x as f32 - 32.0).powi(2) + (y as f32 - 32.0).powi(2);
-        if away2 < 400.0 {
-            40.0 / 255.0
-        } else {
-            240.0 / 255.0
-        }
+        (if away2 < 400.0 { 40.0 } else { 240.0 }) / 255.0
     };
-    let plane: Vec<f32> = (0..64 * 64).map(|i| shade(i % 64, i / 64)).collect();
-    let picture = Image::new(64, 64, [plane.clone(), plane.clone(), plane]).unwrap();
+    let picture = Image::from_fn(64, 64, 1, level).unwrap();
     // Chance decides whether so few strokes find the stairs of its border: one seed of three reaches 32 dB.
     for least in [28.0, 30.0, 32.0] {
         let reaches = |seed: u64| {
             let config = Config {
-                budget: of_psnr(least),
                 seed,
-                ..Config::default()
+                ..within(of_psnr(least))
             };
             let fit = drawn(&picture, &config);
-            let reached = verdict(&fit, &config).fidelity.psnr_db;
-            assert_eq!(
-                fit.stop == Stop::Psnr,
-                reached >= least,
-                "{reached} dB of {least}"
-            );
-            reached >= least
+            let reached = verdict(&fit).fidelity.psnr_db;
+            let is_met = reached >= least;
+            assert_eq!(fit.stop == Stop::Psnr, is_met, "{reached} dB of {least}");
+            is_met
         };
         assert!((0..9).any(reaches), "{least}");
     }
@@ -141,7 +124,7 @@ fn bytes_are_met() {
             budget: of_bytes(most),
             ..draft(1)
         };
-        let bytes = text(&drawn(&picture, &config), &config).len();
+        let bytes = drawn(&picture, &config).svg().len();
         assert!(bytes <= most && bytes * 10 > most * 8, "{bytes} of {most}");
     }
 }
@@ -155,38 +138,15 @@ fn a_picture_of_one_colour_needs_no_stroke() {
     };
     let fit = drawn(&picture, &config);
     assert_eq!(fit.scene.len(), 0);
-    assert_eq!(verdict(&fit, &config).fidelity.mse, 0.0);
+    assert_eq!(verdict(&fit).fidelity.mse, 0.0);
 }
 
 /// A capsule drawn at four times the size, and reduced.
 #[test]
 fn one_capsule_on_a_flat_page_is_one_stroke_or_two() {
-    let (width, height) = (100, 75);
-    let inside = |x: f32, y: f32| {
-        let [ax, ay, bx, by] = [22.5, 20.0, 75.0, 52.5];
-        let along =
-            ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax).powi(2) + (by - ay).powi(2));
-        let h = along.clamp(0.0, 1.0);
-        (x - ax - h * (bx - ax)).hypot(y - ay - h * (by - ay)) < 6.0
-    };
-    let covered = |i: usize| {
-        let samples = (0..16).filter(|k| {
-            let at = |i: usize, k: usize| i as f32 + (k as f32 + 0.5) / 4.0;
-            inside(at(i % width, k % 4), at(i / width, k / 4))
-        });
-        samples.count() as f32 / 16.0
-    };
-    let plane = |page: f32, ink: f32| {
-        (0..width * height)
-            .map(|i| page + covered(i) * (ink - page))
-            .collect()
-    };
-    let picture = Image::new(
-        width,
-        height,
-        [plane(0.94, 0.16), plane(0.94, 0.24), plane(0.92, 0.63)],
-    )
-    .unwrap();
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="75"><rect width="100" height="75" fill="#f0f0eb"/><path d="M22.5 20L75 52.5" stroke="#293da1" stroke-width="12" stroke-linecap="round"/></svg>"##;
+    let picture = verify::render(svg, verify::Size::Scale(4.0), None).unwrap();
+    let picture = picture.reduced(100, 75);
     let fit = drawn(&picture, &Config::default());
     assert!((1..=2).contains(&fit.scene.len()), "{}", fit.scene.len());
 }
@@ -202,18 +162,13 @@ fn strokes_share_the_pens_of_the_picture() {
     let thin = r##"stroke="#c02010" stroke-width="2.6""##;
     let thick = r##"stroke="#1030a0" stroke-width="5.3""##;
     let lines: String = (0..6).map(|i| line(i, [thin, thick][i % 2])).collect();
-    let picture = verify::render(
-        &format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" width="144" height="100" stroke-linecap="round">{lines}</svg>"#
-        ),
-        verify::Size::Scale(1.0),
-        Some([1.0; 3]),
-    )
-    .unwrap();
+    let picture = on_white(&format!(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="144" height="100" stroke-linecap="round">{lines}</svg>"#
+    ));
     let config = Config::default();
     let fit = drawn(&picture, &config);
     assert_eq!(fit.scene.len(), 6);
-    let written = svg::read(&text(&fit, &config)).unwrap();
+    let written = svg::read(&fit.svg()).unwrap();
     let looks = written.strokes().map(|s| (s.color, s.radius, s.opacity));
     let mut looks: Vec<String> = looks.map(|look| format!("{look:?}")).collect();
     looks.sort();
@@ -221,7 +176,7 @@ fn strokes_share_the_pens_of_the_picture() {
     assert_eq!(looks.len(), 2, "{looks:?}");
     assert!(written.marks().all(|mark| mark.opacity() == 1.0));
     assert!(written.strokes().all(|s| s.path.points().len() == 2));
-    assert!(verdict(&fit, &config).fidelity.psnr_db > 38.0);
+    assert!(verdict(&fit).fidelity.psnr_db > 38.0);
 }
 
 #[test]
@@ -244,17 +199,6 @@ fn quality_decides_how_many_strokes_a_scene_gets() {
 }
 
 #[test]
-fn opaque_drawings_are_opaque() {
-    let config = Config {
-        opaque: true,
-        ..draft(60)
-    };
-    let fit = drawn(&ball(64, 48), &config);
-    assert!(fit.scene.marks().all(|mark| mark.opacity() == 1.0));
-    assert!(!text(&fit, &config).contains("stroke-opacity"));
-}
-
-#[test]
 fn progressive_drawings_are_better_with_every_layer() {
     let config = Config {
         progressive: true,
@@ -268,44 +212,18 @@ fn progressive_drawings_are_better_with_every_layer() {
 
 #[test]
 fn another_seed_is_another_drawing() {
-    let picture = ball(64, 48);
+    let picture = ball();
     let with = |seed| {
         let config = Config { seed, ..draft(30) };
-        text(&drawn(&picture, &config), &config)
+        drawn(&picture, &config).svg()
     };
     assert_ne!(with(1), with(2));
 }
 
 #[test]
-fn an_observer_sees_progress_and_may_stop() {
-    let picture = ball(64, 48);
-    let mut seen = Vec::new();
-    let mut watch = |progress: &Progress<'_>| {
-        seen.push(progress.done);
-        if seen.len() == 40 {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    };
-    let fit = Fitter::new(draft(100))
-        .observer(&mut watch)
-        .fit(&picture)
-        .unwrap();
-    assert_eq!(fit.stop, Stop::Interrupted);
-    assert_eq!(seen.len(), 40);
-    assert!(
-        seen.windows(2).all(|w| w[0] <= w[1]) && seen.iter().all(|done| (0.0..=1.0).contains(done))
-    );
-}
-
-#[test]
 fn an_observer_sees_drawings_that_compete_and_may_stop_those() {
     let picture = sample("noto-gem").flattened([1.0; 3]);
-    let config = Config {
-        budget: of_strokes(40),
-        ..Config::default()
-    };
+    let config = within(of_strokes(40));
     let (mut done, mut trials, mut last) = (0.0, 0, 0);
     let mut watch = |progress: &Progress<'_>| {
         assert!(progress.done >= done, "{} after {done}", progress.done);
@@ -354,17 +272,10 @@ fn a_fit_that_may_finish_after_it_was_stopped_is_better_for_it() {
                 ControlFlow::Continue(())
             }
         };
-        let config = Config {
-            budget: of_strokes(1000),
-            ..Config::default()
-        };
-        let fit = Fitter::new(config.clone())
-            .observer(&mut watch)
-            .grace(grace)
-            .fit(&picture)
-            .unwrap();
+        let fitter = Fitter::new(within(of_strokes(1000))).observer(&mut watch);
+        let fit = fitter.grace(grace).fit(&picture).unwrap();
         assert_eq!(fit.stop, Stop::Interrupted);
-        verdict(&fit, &config).fidelity.psnr_db
+        verdict(&fit).fidelity.psnr_db
     };
     let (at_once, finished) = (stopped(Duration::ZERO), stopped(Duration::from_secs(2)));
     assert!(finished > at_once + 1.0, "{at_once} {finished}");
@@ -376,10 +287,8 @@ fn the_drawing_can_be_seen_while_it_grows() {
     let mut seen = Vec::new();
     let mut watch = |progress: &Progress<'_>| {
         let scene = progress.scene();
-        assert_eq!(
-            (scene.width as usize, scene.height as usize),
-            (picture.width(), picture.height())
-        );
+        let size = [scene.width as usize, scene.height as usize];
+        assert_eq!(size, [picture.width(), picture.height()]);
         assert_eq!(scene.len(), progress.strokes);
         seen.push(scene);
         ControlFlow::Continue(())
@@ -390,11 +299,8 @@ fn the_drawing_can_be_seen_while_it_grows() {
         .unwrap();
     // Large strokes are fitted to a reduced picture; what is seen is in px of the whole one all the same.
     let reach = |scene: &Scene| {
-        scene
-            .marks()
-            .flat_map(Mark::paths)
-            .map(|path| path.ends().0.x)
-            .fold(0.0, f64::max)
+        let paths = scene.marks().flat_map(Mark::paths);
+        paths.map(|path| path.ends().0.x).fold(0.0, f64::max)
     };
     assert!(reach(&seen[seen.len() / 3]) > 200.0);
     assert_eq!(seen.last().unwrap().len(), fit.scene.len());
@@ -416,11 +322,11 @@ fn strokes_that_become_no_numbers_are_dropped_and_counted() {
         stages: Some(1),
         ..draft(40)
     };
-    let fit = drawn(&ball(64, 48), &config);
+    let fit = drawn(&ball(), &config);
     assert!(fit.scene.is_empty());
     assert!(fit.dropped.non_finite > 10, "{:?}", fit.dropped);
     // Nor is the page poisoned: it has the picture's mean colour, not black.
-    let verdict = verdict(&fit, &config);
+    let verdict = verdict(&fit);
     assert!(verdict.fidelity.psnr_db > 12.0, "{verdict:?}");
 }
 
@@ -437,7 +343,7 @@ fn limited(limit_s: f32, began_s: u64) -> Fit {
     };
     let since = Instant::now() - Duration::from_secs(began_s);
     let fitter = Fitter::new(config).since(since);
-    fitter.fit(&ball(64, 48)).unwrap()
+    fitter.fit(&ball()).unwrap()
 }
 
 #[test]

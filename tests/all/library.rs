@@ -1,14 +1,16 @@
 //! Needs of a binding, with the library alone: `cargo test --no-default-features --test all library::`.
 
+use std::fmt::Debug;
+use std::str::FromStr;
 use std::time::Duration;
 
-use crate::support::of_strokes;
+use crate::support::{of_strokes, within};
 use serde_json::Value;
-use strokefit::ErrorKind;
 use strokefit::fit::{Background, Base, Colors, Config, Fitter, Preset};
 use strokefit::image::{Image, Rows};
 use strokefit::report::{self, FitReport, Judged, Run, Usage};
 use strokefit::svg::{Form, Group, Length, WriteOptions};
+use strokefit::{Error, ErrorKind};
 
 const SIDE: usize = 32;
 
@@ -31,14 +33,12 @@ fn disc() -> Image {
 }
 
 fn config() -> Config {
-    let budget = of_strokes(5);
     Config {
-        budget,
         preset: "draft".parse().unwrap(),
         background: "#f0f0f0".parse().unwrap(),
         colors: "#f0f0f0,#1e1e1e".parse().unwrap(),
         seed: 7,
-        ..Config::default()
+        ..within(of_strokes(5))
     }
 }
 
@@ -51,8 +51,16 @@ fn drawn(config: &Config, base: Option<Base>) -> Judged {
     Judged::new(fitter.fit(&disc()).unwrap()).unwrap()
 }
 
-fn json(judged: &Judged, run: &Run<'_>) -> Value {
-    let text = report::json(&FitReport::of(judged, run)).unwrap();
+/// The report of a run with these options in 1.5 s.
+fn reported(judged: &Judged, config: &Config, base: Option<&str>) -> Value {
+    let run = Run {
+        input: "disc",
+        base,
+        config,
+        wall: Duration::from_millis(1500),
+        usage: Usage::default(),
+    };
+    let text = report::json(&FitReport::of(judged, &run)).unwrap();
     assert!(text.ends_with("}\n"));
     serde_json::from_str(&text).unwrap()
 }
@@ -61,14 +69,7 @@ fn json(judged: &Judged, run: &Run<'_>) -> Value {
 fn a_fit_reports_as_the_command_line_does() {
     let config = config();
     let judged = drawn(&config, None);
-    let run = Run {
-        input: "disc",
-        base: None,
-        config: &config,
-        wall: Duration::from_millis(1500),
-        usage: Usage::default(),
-    };
-    let report = json(&judged, &run);
+    let report = reported(&judged, &config, None);
     assert_eq!(report["schema"], report::SCHEMA);
     assert_eq!(report["input"]["path"], "disc");
     assert_eq!(report["input"]["width"], SIDE);
@@ -78,19 +79,7 @@ fn a_fit_reports_as_the_command_line_does() {
     assert_eq!(report["seed"], 7);
     assert!(report["fidelity"]["psnr_db"].as_f64().unwrap() > 20.0);
     assert!(judged.verdict.agrees());
-}
-
-#[test]
-fn what_is_not_known_or_does_not_apply_is_null() {
-    let config = config();
-    let run = Run {
-        input: "",
-        base: None,
-        config: &config,
-        wall: Duration::ZERO,
-        usage: Usage::default(),
-    };
-    let report = json(&drawn(&config, None), &run);
+    // What is not known or does not apply is null.
     for field in ["cpu_s", "peak_rss_bytes", "alpha", "base"] {
         assert_eq!(report.get(field), Some(&Value::Null), "{field}");
     }
@@ -100,16 +89,9 @@ fn what_is_not_known_or_does_not_apply_is_null() {
 fn a_base_is_reported_with_its_strokes() {
     let config = config();
     let first = drawn(&config, None);
-    let base = Base::read(first.svg.clone(), &disc(), false).unwrap();
+    let base = Base::read(first.svg, &disc(), false).unwrap();
     let strokes = base.scene.len();
-    let run = Run {
-        input: "disc",
-        base: Some("first.svg"),
-        config: &config,
-        wall: Duration::ZERO,
-        usage: Usage::now(),
-    };
-    let report = json(&drawn(&config, Some(base)), &run);
+    let report = reported(&drawn(&config, Some(base)), &config, Some("first.svg"));
     assert_eq!(report["base"]["path"], "first.svg");
     assert_eq!(report["base"]["strokes"], strokes);
 }
@@ -132,68 +114,25 @@ fn words_become_a_configuration() {
 
 #[test]
 fn a_word_that_is_none_is_refused_with_those_that_are() {
-    let refusals = [
+    fn refusal<T: FromStr<Err = Error> + Debug>(word: &str) -> Error {
+        word.parse::<T>().unwrap_err()
+    }
+    for (error, words) in [
         (
-            "bset".parse::<Preset>().map(|_| ()),
-            "draft, balanced or best",
+            refusal::<Preset>("bset"),
+            ["'bset'", "draft, balanced or best"],
         ),
         (
-            "mauve".parse::<Background>().map(|_| ()),
-            "auto, none or a colour",
+            refusal::<Background>("mauve"),
+            ["'mauve'", "auto, none or a colour"],
         ),
-        ("#ff".parse::<Colors>().map(|_| ()), "#rrggbb"),
-        ("tiny".parse::<Form>().map(|_| ()), "smallest"),
-        ("hue".parse::<Group>().map(|_| ()), "stage, color or object"),
-        ("12".parse::<Length>().map(|_| ()), "mm, cm, in, pt or px"),
-    ];
-    for ((refusal, remedy), word) in refusals
-        .into_iter()
-        .zip(["bset", "mauve", "#ff", "tiny", "hue", "12"])
-    {
-        let error = refusal.unwrap_err();
+        (refusal::<Colors>("#ff"), ["'#ff'", "#rrggbb"]),
+        (refusal::<Form>("tiny"), ["'tiny'", "smallest"]),
+        (refusal::<Group>("hue"), ["'hue'", "stage, color or object"]),
+        (refusal::<Length>("12"), ["'12'", "mm, cm, in, pt or px"]),
+    ] {
         assert_eq!(error.kind(), ErrorKind::Config);
         let message = error.to_string();
-        assert!(message.contains(&format!("'{word}'")), "{message}");
-        assert!(message.contains(remedy), "{message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
     }
-}
-
-#[test]
-fn rows_of_all_types_and_strides_are_the_same_picture() {
-    let (width, height) = (3, 2);
-    let bytes = [0_u8, 51, 102, 153, 204, 255];
-    let expected = Image::from_rows(Rows::packed(width, height, 1, &bytes)).unwrap();
-    for gap in [0, 1, 3, 7] {
-        let stride = width + gap;
-        // The last row ends with its last pixel.
-        let mut words = vec![u16::MAX; stride + width];
-        let mut floats = vec![f32::NAN; stride + width];
-        for (i, &byte) in bytes.iter().enumerate() {
-            let at = i / width * stride + i % width;
-            words[at] = u16::from(byte) * 257;
-            floats[at] = f32::from(byte) / 255.0;
-        }
-        let words = Rows {
-            stride,
-            ..Rows::packed(width, height, 1, &words)
-        };
-        let floats = Rows {
-            stride,
-            ..Rows::packed(width, height, 1, &floats)
-        };
-        assert_eq!(Image::from_rows(words).unwrap(), expected, "{gap}");
-        assert_eq!(Image::from_rows(floats).unwrap(), expected, "{gap}");
-    }
-}
-
-#[test]
-fn rows_that_are_too_few_are_refused_with_what_is_needed() {
-    let error = Image::from_rows(Rows::packed(4, 4, 3, &[0_u8; 47])).unwrap_err();
-    assert_eq!(error.kind(), ErrorKind::Picture);
-    let message = error.to_string();
-    assert!(message.contains("47 samples"), "{message}");
-    assert!(
-        message.contains("stride × (height − 1) + width × channels"),
-        "{message}"
-    );
 }

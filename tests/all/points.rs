@@ -1,8 +1,8 @@
 //! Strokes get the points that their picture asks for: bent and closed lines are one stroke, straight ones keep two
 //! points, and budgets hold.
 
-use crate::support::{of_bytes, of_strokes, rendered};
-use strokefit::fit::{Background, Config, Fit, Fitter};
+use crate::support::{of_bytes, of_strokes, rendered, within};
+use strokefit::fit::{Background, Base, Budget, Config, Fit, Fitter};
 use strokefit::image::Image;
 use strokefit::math::Point;
 use strokefit::metrics;
@@ -38,21 +38,26 @@ fn drawn(stroke: Stroke) -> Image {
         stages: vec![Stage::from_iter([stroke])],
         ..Scene::empty(SIDE, SIDE, Some([1.0; 3]))
     };
-    let text = svg::write(&scene, &WriteOptions::default());
-    rendered(&text)
+    rendered(&svg::write(&scene, &WriteOptions::default()))
 }
 
-/// A drawing of `strokes` strokes, each of at most `points` points, and its fidelity, dB.
-fn fitted(picture: &Image, strokes: usize, points: Option<usize>) -> (Fit, f64) {
-    let config = Config {
-        budget: of_strokes(strokes),
+/// The default of a drawing within `budget` on white, of strokes of at most `points` points.
+fn config(budget: Budget, points: Option<usize>) -> Config {
+    Config {
         points,
         background: Background::Color([1.0; 3]),
-        ..Config::default()
-    };
-    let fit = Fitter::new(config).fit(picture).unwrap();
-    let file = rendered(&fit.svg());
-    let db = metrics::psnr(picture, &file).unwrap();
+        ..within(budget)
+    }
+}
+
+/// A drawing and its fidelity, dB.
+fn fitted(picture: &Image, config: Config) -> (Fit, f64) {
+    judged(picture, Fitter::new(config))
+}
+
+fn judged(picture: &Image, fitter: Fitter<'_>) -> (Fit, f64) {
+    let fit = fitter.fit(picture).unwrap();
+    let db = metrics::psnr(picture, &rendered(&fit.svg())).unwrap();
     (fit, db)
 }
 
@@ -63,8 +68,8 @@ fn points(scene: &Scene) -> Vec<usize> {
 
 #[test]
 fn bent_lines_get_points() {
-    let (fit, db) = fitted(&ring(), 4, None);
-    let (straight, straight_db) = fitted(&ring(), 4, Some(2));
+    let (fit, db) = fitted(&ring(), config(of_strokes(4), None));
+    let (straight, straight_db) = fitted(&ring(), config(of_strokes(4), Some(2)));
     assert_eq!(points(&straight.scene), [2; 4]);
     let points = points(&fit.scene);
     assert!(points.iter().any(|&n| n > 2), "{points:?}");
@@ -77,16 +82,15 @@ fn a_straight_line_keeps_two_points() {
     // At this quality a point has to remove a third of a grey level of a pixel.
     let config = Config {
         quality: Some(20.0),
-        background: Background::Color([1.0; 3]),
-        ..Config::default()
+        ..config(Budget::default(), None)
     };
-    let fit = Fitter::new(config).fit(&straight).unwrap();
+    let (fit, _) = fitted(&straight, config);
     let most = points(&fit.scene).into_iter().max();
     assert_eq!(most, Some(2), "{:?}", points(&fit.scene));
 }
 
 #[test]
-fn no_stroke_has_more_points_than_allowed() {
+fn no_stroke_has_more_points_than_allowed_and_more_draw_better() {
     let zigzag = [
         (10.0, 20.0),
         (80.0, 28.0),
@@ -95,42 +99,22 @@ fn no_stroke_has_more_points_than_allowed() {
         (12.0, 80.0),
     ];
     let zigzag = picture(&zigzag, false);
-    for most in [2, 3, 5] {
-        let (fit, _) = fitted(&zigzag, 3, Some(most));
+    let db = [2, 3, 6].map(|most| {
+        let (fit, db) = fitted(&zigzag, config(of_strokes(3), Some(most)));
         let points = points(&fit.scene);
         assert!(points.iter().all(|&n| n <= most), "{most}: {points:?}");
-    }
-}
-
-#[test]
-fn more_points_draw_better() {
-    let zigzag = [
-        (10.0, 20.0),
-        (80.0, 28.0),
-        (14.0, 48.0),
-        (84.0, 60.0),
-        (12.0, 80.0),
-    ];
-    let zigzag = picture(&zigzag, false);
-    let db: Vec<f64> = [2, 3, 6].map(|n| fitted(&zigzag, 3, Some(n)).1).into();
+        db
+    });
     assert!(db[1] > db[0] && db[2] > db[0], "{db:?}");
 }
 
 #[test]
 fn a_budget_of_bytes_is_kept_with_points() {
     let ring = ring();
-    let budget = of_bytes(1500);
-    let config = |points| Config {
-        budget,
-        points,
-        background: Background::Color([1.0; 3]),
-        ..Config::default()
-    };
     let db = [None, Some(2)].map(|points| {
-        let fit = Fitter::new(config(points)).fit(&ring).unwrap();
+        let (fit, db) = fitted(&ring, config(of_bytes(1500), points));
         assert!(fit.svg().len() <= 1500);
-        let file = rendered(&fit.svg());
-        metrics::psnr(&ring, &file).unwrap()
+        db
     });
     assert!(db[0] > db[1] + 1.0, "{db:?}");
 }
@@ -138,16 +122,10 @@ fn a_budget_of_bytes_is_kept_with_points() {
 #[test]
 fn strokes_that_have_points_are_fitted_further() {
     let bent = picture(&[(16.0, 76.0), (40.0, 20.0), (80.0, 56.0)], false);
-    let (fit, db) = fitted(&bent, 1, None);
-    let base = strokefit::fit::Base::read(fit.svg(), &bent, false).unwrap();
-    let config = Config {
-        budget: of_strokes(2),
-        ..Config::default()
-    };
-    let more = Fitter::new(config).on(base).fit(&bent).unwrap();
+    let (fit, db) = fitted(&bent, config(of_strokes(1), None));
+    let base = Base::read(fit.svg(), &bent, false).unwrap();
+    let (more, refined) = judged(&bent, Fitter::new(within(of_strokes(2))).on(base));
     let most = points(&more.scene).into_iter().max().unwrap();
     assert!(most > 2, "{:?}", points(&more.scene));
-    let file = rendered(&more.svg());
-    let refined = metrics::psnr(&bent, &file).unwrap();
     assert!(refined >= db, "{refined} < {db}");
 }

@@ -40,6 +40,26 @@ struct Case {
     tolerance: f64,
 }
 
+impl Case {
+    fn new(name: impl Into<String>, [width, height]: [usize; 2], strokes: Strokes) -> Self {
+        Self {
+            name: name.into(),
+            width,
+            height,
+            strokes,
+            tolerance: GRADIENT_TOLERANCE,
+        }
+    }
+}
+
+/// An edge of this width, the most usual one.
+fn smoothstep(width: f32) -> Softness {
+    Softness {
+        coverage: Coverage::Smoothstep,
+        width,
+    }
+}
+
 /// Random strokes of mixed size and opacity, some off the picture.
 fn random(seed: u64, width: usize, height: usize, count: usize) -> Case {
     let u = |i: usize, k: u64| draw(seed, 9, i as u64, k);
@@ -63,101 +83,89 @@ fn random(seed: u64, width: usize, height: usize, count: usize) -> Case {
             opacity,
         ]
     };
-    Case {
-        name: format!("random {count} on {width}×{height}"),
-        width,
-        height,
-        strokes: (0..count).map(stroke).collect(),
-        tolerance: GRADIENT_TOLERANCE,
-    }
+    Case::new(
+        format!("random {count} on {width}×{height}"),
+        [width, height],
+        (0..count).map(stroke).collect(),
+    )
 }
 
 /// One kind of trouble each.
 fn degenerate() -> Vec<Case> {
-    let case = |name: &str, strokes: &[Params]| Case {
-        name: name.into(),
-        width: 40,
-        height: 36,
-        strokes: strokes.iter().collect(),
-        tolerance: GRADIENT_TOLERANCE,
+    let case = |name: &str, strokes: &[Params]| Case::new(name, SIZE, strokes.iter().collect());
+    let red = |[ax, ay, bx, by]: [f32; 4], radius, opacity| -> Params {
+        [ax, ay, bx, by, radius, 0.9, 0.2, 0.1, opacity]
     };
-    let red = |a: [f32; 2], b: [f32; 2], radius: f32, opacity: f32| {
-        [a[0], a[1], b[0], b[1], radius, 0.9, 0.2, 0.1, opacity]
-    };
+    let diagonal = [5.2, 6.1, 30.4, 25.7];
+    let dot = [20.3, 17.1, 20.3, 17.1];
+    let long = [-1e5, -1e5, 1e5, 1.001e5];
     vec![
         case("nothing", &[]),
-        case("zero length", &[red([20.3, 17.1], [20.3, 17.1], 4.2, 0.7)]),
-        case("zero radius", &[red([5.2, 6.1], [30.4, 25.7], 0.0, 0.9)]),
-        case(
-            "negative radius",
-            &[red([5.2, 6.1], [30.4, 25.7], -2.0, 0.9)],
-        ),
+        case("zero length", &[red(dot, 4.2, 0.7)]),
+        case("zero radius", &[red(diagonal, 0.0, 0.9)]),
+        case("negative radius", &[red(diagonal, -2.0, 0.9)]),
         case(
             "off the picture",
-            &[red([-50.0, -9.0], [-45.0, 50.0], 3.0, 1.0)],
+            &[red([-50.0, -9.0, -45.0, 50.0], 3.0, 1.0)],
         ),
         case(
             "across the edge",
-            &[red([-12.0, 8.0], [60.0, 30.0], 5.0, 0.6)],
+            &[red([-12.0, 8.0, 60.0, 30.0], 5.0, 0.6)],
         ),
-        case("opacity 0", &[red([5.0, 6.0], [30.0, 25.0], 3.0, 0.0)]),
-        case(
-            "opaque and stacked",
-            &[red([5.0, 6.0], [30.0, 25.0], 6.0, 1.0); 5],
-        ),
+        case("opacity 0", &[red(diagonal, 3.0, 0.0)]),
+        case("opaque and stacked", &[red(diagonal, 6.0, 1.0); 5]),
         case(
             "on pixel centres",
-            &[red([10.5, 10.5], [30.5, 10.5], 1.5, 0.8)],
+            &[red([10.5, 10.5, 30.5, 10.5], 1.5, 0.8)],
         ),
         case(
             "covers everything",
             &[
-                red([20.0, 18.0], [21.0, 18.0], 90.0, 1.0),
-                red([9.0, 9.0], [30.0, 20.0], 3.0, 0.5),
+                red([20.0, 18.0, 21.0, 18.0], 90.0, 1.0),
+                red([9.0, 9.0, 30.0, 20.0], 3.0, 0.5),
             ],
         ),
         case(
             "nearly zero length",
-            &[red([20.3, 17.1], [20.3001, 17.1], 4.2, 0.7)],
+            &[red([20.3, 17.1, 20.3001, 17.1], 4.2, 0.7)],
         ),
-        case("one end far away", &[red([7.0, 5.0], [1e6, 1e6], 2.0, 0.5)]),
+        case("one end far away", &[red([7.0, 5.0, 1e6, 1e6], 2.0, 0.5)]),
         case(
             "a thousand on each other",
-            &[red([3.0, 4.0], [9.0, 7.0], 2.0, 0.001); 1000],
+            &[red([3.0, 4.0, 9.0, 7.0], 2.0, 0.001); 1000],
         ),
         // Its ends are known to 1/128 px only, in f32.
         Case {
             tolerance: 3e-3,
-            ..case("very long", &[red([-1e5, -1e5], [1e5, 1.001e5], 2.0, 0.5)])
+            ..case("very long", &[red(long, 2.0, 0.5)])
         },
     ]
 }
 
-/// A path of every kind between two ordinary strokes, in a picture of two tiles by two.
+/// Between two ordinary strokes in a picture of two tiles by two, what `push` adds to those.
+fn between(name: &str, push: impl Fn(&mut Strokes)) -> Case {
+    let others = random(7, WIDTH, HEIGHT, 2).strokes;
+    let mut strokes = Strokes::new();
+    strokes.push(others.get(0));
+    push(&mut strokes);
+    strokes.push(others.get(1));
+    Case::new(name, SIZE, strokes)
+}
+
+/// A path of every kind.
 fn along_paths() -> Vec<Case> {
-    let (width, height) = (40, 36);
-    let others = random(7, width, height, 2).strokes;
-    let paths = paths(width as f32, height as f32).into_iter();
+    let paths = paths(WIDTH as f32, HEIGHT as f32).into_iter().enumerate();
     let case = |(k, (name, path)): (usize, (&str, Path))| {
-        let mut strokes = Strokes::new();
-        strokes.push(others.get(0));
-        strokes.push_stroke(&Stroke {
+        let stroke = Stroke {
             path,
             radius: [1.3, 4.2, 0.4][k % 3],
             cap: Cap::Round,
             color: [0.9, 0.2, 0.1],
             opacity: [0.6, 1.0][k % 2],
-        });
-        strokes.push(others.get(1));
-        Case {
-            name: name.into(),
-            width,
-            height,
-            strokes,
-            tolerance: GRADIENT_TOLERANCE,
-        }
+        };
+        between(name, |strokes| strokes.push_stroke(&stroke))
     };
-    paths.enumerate().map(case).collect()
+    paths.map(case).collect()
 }
 
 /// An area of these rings on top.
@@ -180,41 +188,27 @@ fn push_area(
     });
 }
 
-/// Areas, each with a name and perhaps a gradient, between two ordinary strokes in a picture of two tiles by two.
-fn between_strokes(areas: impl Iterator<Item = (String, Rings, Option<Paint>)>) -> Vec<Case> {
-    let others = random(7, WIDTH, HEIGHT, 2).strokes;
-    let case = |(k, (name, rings, paint)): (usize, (String, Rings, Option<Paint>))| {
-        let mut strokes = Strokes::new();
-        strokes.push(others.get(0));
-        let (color, opacity) = ([0.9, 0.2, 0.1], [0.6, 1.0][k % 2]);
-        push_area(&mut strokes, &rings, color, opacity, paint.as_ref());
-        strokes.push(others.get(1));
-        Case {
-            name,
-            width: WIDTH,
-            height: HEIGHT,
-            strokes,
-            tolerance: GRADIENT_TOLERANCE,
-        }
-    };
-    areas.enumerate().map(case).collect()
-}
-
 /// Two tiles by two.
+const SIZE: [usize; 2] = [WIDTH, HEIGHT];
 const WIDTH: usize = 40;
 const HEIGHT: usize = 36;
 
-/// An area with a gradient of every kind.
-fn of_paints() -> Vec<Case> {
-    let rings = areas(WIDTH as f32, HEIGHT as f32).swap_remove(0);
-    let painted = paints().into_iter();
-    between_strokes(painted.map(|(name, paint)| (name.into(), rings.clone(), Some(paint))))
-}
-
-/// An area of every kind.
+/// An area of every kind, and one with a gradient of every kind.
 fn of_areas() -> Vec<Case> {
-    let areas = areas(WIDTH as f32, HEIGHT as f32).into_iter();
-    between_strokes(areas.map(|rings| (rings.name.clone(), rings, None)))
+    let areas = areas(WIDTH as f32, HEIGHT as f32);
+    let paints = paints().into_iter();
+    let painted = paints.map(|(name, paint)| (name.to_owned(), areas[0].clone(), Some(paint)));
+    let plain = areas
+        .iter()
+        .map(|rings| (rings.name.clone(), rings.clone(), None));
+    let case = |(k, (name, rings, paint)): (usize, (String, Rings, Option<Paint>))| {
+        let (color, opacity) = ([0.9, 0.2, 0.1], [0.6, 1.0][k % 2]);
+        between(&name, |strokes| {
+            push_area(strokes, &rings, color, opacity, paint.as_ref());
+        })
+    };
+    let plain = plain.enumerate().map(case);
+    plain.chain(painted.enumerate().map(case)).collect()
 }
 
 /// Areas of one to three random rings among random strokes.
@@ -268,13 +262,8 @@ fn long(radius: f32, opacity: f32) -> Case {
         color: [0.2, 0.9, 0.4],
         opacity,
     };
-    Case {
-        name: format!("a thousand points, {radius} px"),
-        width,
-        height,
-        strokes: Strokes::from_iter([&stroke]),
-        tolerance: GRADIENT_TOLERANCE,
-    }
+    let name = format!("a thousand points, {radius} px");
+    Case::new(name, [width, height], Strokes::from_iter([&stroke]))
 }
 
 /// Segments end to end along the border of two tiles, and on both sides of it.
@@ -300,13 +289,8 @@ fn along_borders() -> Case {
         color: [0.7, 0.1, 0.4],
         opacity: 0.7,
     };
-    Case {
-        name: "along the borders of tiles".into(),
-        width: 70,
-        height: 66,
-        strokes: Strokes::from_iter([&stroke]),
-        tolerance: GRADIENT_TOLERANCE,
-    }
+    let strokes = Strokes::from_iter([&stroke]);
+    Case::new("along the borders of tiles", [70, 66], strokes)
 }
 
 /// Random strokes of one to nine points, open and closed, straight and curved.
@@ -356,7 +340,6 @@ fn cases() -> Vec<Case> {
     cases.push(random(99, 70, 66, 200));
     cases.extend(along_paths());
     cases.extend(of_areas());
-    cases.extend(of_paints());
     cases.push(along_borders());
     cases.push(long(1.0, 0.5));
     cases.push(long(9.0, 0.6));
@@ -364,12 +347,8 @@ fn cases() -> Vec<Case> {
 }
 
 fn target(case: &Case) -> Image {
-    let plane = |c: u64| {
-        (0..case.width * case.height)
-            .map(|i| draw(5, c, i as u64, 0))
-            .collect()
-    };
-    Image::new(case.width, case.height, [plane(0), plane(1), plane(2)]).unwrap()
+    let level = |x, y, c| draw(5, c as u64, (y * case.width + x) as u64, 0);
+    Image::from_fn(case.width, case.height, 3, level).unwrap()
 }
 
 const BACKGROUND: [f32; 3] = [0.3, 0.6, 0.8];
@@ -419,96 +398,80 @@ fn differentiated(case: &Case, simd: Simd, softness: Softness, loss: Loss) -> Gr
     gradients
 }
 
-/// The backdrops and targets of two losses: a colour and a picture.
-fn two_mattes(case: &Case) -> ([Canvas; 2], Canvas) {
+/// Gradients of two losses, on a colour and on a picture: in one pass, and in one for each.
+fn differentiated_on_mattes(case: &Case, simd: Simd, softness: Softness) -> [Gradients; 3] {
     let first = target(case);
     let [red, green, blue] = first.planes().clone();
     let second = Image::new(case.width, case.height, [blue, red, green]).unwrap();
-    let below = second
-        .planes()
-        .clone()
-        .map(|plane| plane.iter().map(|v| 1.0 - v).collect());
-    let below = Image::new(case.width, case.height, below).unwrap();
-    (
-        [first, second].map(|image| Canvas::from_image(&image)),
-        Canvas::from_image(&below),
-    )
-}
-
-fn differentiated_on_mattes(case: &Case, simd: Simd, softness: Softness) -> Gradients {
-    let (targets, below) = two_mattes(case);
+    let dark = |x: usize, y: usize, c: usize| 1.0 - second.planes()[c][y * case.width + x];
+    let below = Image::from_fn(case.width, case.height, 3, dark).unwrap();
+    let below = Canvas::from_image(&below);
+    let targets = [first, second].map(|image| Canvas::from_image(&image));
     let losses = targets
         .each_ref()
         .map(|target| Objective::new(Loss::L2, target));
-    let mut gradients = Gradients::default();
-    renderer(case, simd).backward_on_mattes(
-        &case.strokes,
-        softness,
-        [Backdrop::Color(BACKGROUND), Backdrop::Canvas(&below)],
-        losses.each_ref(),
-        &mut gradients,
-    );
-    gradients
-}
-
-/// Gradients as in one pass, but made in two.
-fn differentiated_one_by_one(case: &Case, simd: Simd, softness: Softness) -> [Gradients; 2] {
-    let (targets, below) = two_mattes(case);
     let backdrops = [Backdrop::Color(BACKGROUND), Backdrop::Canvas(&below)];
-    [0, 1].map(|i| {
-        let loss = Objective::new(Loss::L2, &targets[i]);
-        let mut gradients = Gradients::default();
-        let mut renderer = renderer(case, simd);
-        renderer.backward(&case.strokes, softness, backdrops[i], &loss, &mut gradients);
-        gradients
-    })
+    let [mut both, mut one, mut other] = <[Gradients; 3]>::default();
+    let strokes = &case.strokes;
+    let mut renderer = renderer(case, simd);
+    renderer.backward_on_mattes(strokes, softness, backdrops, losses.each_ref(), &mut both);
+    renderer.backward(strokes, softness, backdrops[0], &losses[0], &mut one);
+    renderer.backward(strokes, softness, backdrops[1], &losses[1], &mut other);
+    [both, one, other]
 }
 
-fn report(failures: Vec<String>) {
-    assert!(
-        failures.is_empty(),
-        "{} failures:\n{}",
-        failures.len(),
-        failures.join("\n")
-    );
-}
+/// Numbers that are not as expected.
+#[derive(Default)]
+struct Failures(Vec<String>);
 
-/// Differences between the fast image and the naive one.
-fn image_failures(case: &Case, softness: Softness) -> Vec<String> {
-    let fast = fast_image(case, Simd::Auto, softness);
-    let slow = oracle(softness.coverage, softness.width).render(&naive(case));
-    let mut failures = Vec::new();
-    for (i, expected) in slow.iter().enumerate() {
-        for (plane, expected) in fast.planes().iter().zip(expected) {
-            let got = f64::from(plane[i]);
-            if (got - expected).abs() > IMAGE_TOLERANCE || got.is_nan() {
-                failures.push(format!(
-                    "{}, {} {}: {got} not {expected} at {i}",
-                    case.name, softness.coverage, softness.width
-                ));
-            }
+impl Failures {
+    fn compare(&mut self, what: impl FnOnce() -> String, got: f64, expected: f64, within: f64) {
+        if (got - expected).abs() > within || got.is_nan() {
+            self.0.push(format!("{}: {got} not {expected}", what()));
         }
     }
-    failures
+
+    #[track_caller]
+    fn assert_none(&self) {
+        let Self(failures) = self;
+        assert!(
+            failures.is_empty(),
+            "{} failures:\n{}",
+            failures.len(),
+            failures.join("\n")
+        );
+    }
+}
+
+/// Compares the fast image with the naive one.
+fn compare_images(case: &Case, softness: Softness, failures: &mut Failures) {
+    let fast = fast_image(case, Simd::Auto, softness);
+    let Softness { coverage, width } = softness;
+    let slow = oracle(coverage, width).render(&naive(case));
+    for (i, expected) in slow.iter().enumerate() {
+        for (plane, &expected) in fast.planes().iter().zip(expected) {
+            let what = || format!("{}, {coverage} {width}, pixel {i}", case.name);
+            failures.compare(what, plane[i].into(), expected, IMAGE_TOLERANCE);
+        }
+    }
 }
 
 #[test]
 fn images_are_the_oracles() {
-    let mut failures = Vec::new();
+    let mut failures = Failures::default();
     for case in cases() {
         for coverage in Coverage::EACH {
             for width in [0.6, 1.0, 3.0] {
-                failures.extend(image_failures(&case, Softness { coverage, width }));
+                compare_images(&case, Softness { coverage, width }, &mut failures);
             }
         }
     }
-    report(failures);
+    failures.assert_none();
 }
 
 /// A ring of as many points as a path may have, in waves around the middle.
 #[test]
 fn an_area_of_65_535_points_is_the_oracles() {
-    let (width, height) = (40, 36);
     let place = |k: u32| {
         let angle = k as f32 * (std::f32::consts::TAU / 65_535.0);
         let radius = 13.0 + 3.0 * (9.0 * angle).sin();
@@ -520,23 +483,16 @@ fn an_area_of_65_535_points_is_the_oracles() {
         off: vec![false; 65_535],
         ends: vec![65_535],
     };
-    let mut case = Case {
-        name: "65,535 points".into(),
-        width,
-        height,
-        strokes: Strokes::new(),
-        tolerance: GRADIENT_TOLERANCE,
-    };
+    let mut case = Case::new("65,535 points", SIZE, Strokes::new());
     push_area(&mut case.strokes, &rings, [0.9, 0.2, 0.1], 0.8, None);
-    let softness = Softness {
-        coverage: Coverage::Smoothstep,
-        width: 1.0,
-    };
-    report(image_failures(&case, softness));
+    let mut failures = Failures::default();
+    compare_images(&case, smoothstep(1.0), &mut failures);
+    failures.assert_none();
 }
 
 /// The kinds of numbers whose gradients are of one unit.
-const KINDS: [&str; 4] = ["points", "radius", "colour", "opacity"];
+const KINDS: [&str; 5] = ["points", "radius", "colour", "opacity", "other"];
+const OTHER: usize = 4;
 
 /// Gradients of one stroke by number: its kind and its value. Those by points that coincide are added up, since it hangs
 /// on rounding which of them a pixel counts for.
@@ -583,94 +539,86 @@ fn slopes(loss: Loss, canvas: &[[f64; 3]], target: &[[f64; 3]]) -> Vec<[f64; 3]>
     slopes.as_chunks().0.to_vec()
 }
 
-/// Differences between the fast gradients and contributions and the naive ones.
-fn gradient_failures(case: &Case, coverage: Coverage, width: f32, loss: Loss) -> Vec<String> {
-    let fast = differentiated(case, Simd::Auto, Softness { coverage, width }, loss);
-    let (scene, oracle) = (naive(case), oracle(coverage, width));
+/// The largest value of each kind.
+fn largest(numbers: &[(String, usize, f64)]) -> [f64; KINDS.len()] {
+    let mut largest = [FAINT; KINDS.len()];
+    for (_, kind, value) in numbers {
+        largest[*kind] = value.abs().max(largest[*kind]);
+    }
+    largest
+}
+
+fn wide(values: &[f32]) -> Vec<f64> {
+    values.iter().copied().map(f64::from).collect()
+}
+
+/// Compares the fast gradients and contributions with the naive ones.
+fn compare_gradients(case: &Case, softness: Softness, loss: Loss, failures: &mut Failures) {
+    let fast = differentiated(case, Simd::Auto, softness, loss);
+    let (scene, oracle) = (naive(case), oracle(softness.coverage, softness.width));
     let canvas = oracle.render(&scene);
     let target = pixels(&target(case));
     let slow = oracle.gradients(&scene, &slopes(loss, &canvas, &target));
-    let mut failures = Vec::new();
     let mut compare = |what: &str, got: f64, expected: f64, within: f64| {
-        if (got - expected).abs() > within || got.is_nan() {
-            failures.push(format!(
-                "{}, {coverage}: {what}: {got} not {expected}",
-                case.name
-            ));
-        }
+        let what = || format!("{}, {}: {what}", case.name, softness.coverage);
+        failures.compare(what, got, expected, within);
     };
     let flat: Vec<f64> = slow.strokes.iter().flat_map(|s| s.to_params()).collect();
     let expected = numbered(&case.strokes, &flat);
-    let got: Vec<f64> = fast.strokes.iter().copied().map(f64::from).collect();
-    let got = numbered(&case.strokes, &got);
-    let mut largest = [FAINT; KINDS.len()];
-    for (_, kind, value) in &expected {
-        largest[*kind] = value.abs().max(largest[*kind]);
-    }
+    let got = numbered(&case.strokes, &wide(&fast.strokes));
+    let most = largest(&expected);
     for ((name, kind, expected), (.., got)) in expected.iter().zip(&got) {
-        compare(name, *got, *expected, case.tolerance * largest[*kind]);
+        compare(name, *got, *expected, case.tolerance * most[*kind]);
     }
     for (&got, expected) in fast.backdrop.iter().zip(slow.background) {
         compare("background", f64::from(got), expected, 1e-4);
     }
     let contributions = oracle.leave_one_out(&scene, &target);
-    let largest = contributions.iter().fold(FAINT, |m, v| m.max(v.abs()));
+    let most = contributions.iter().fold(FAINT, |m, v| m.max(v.abs()));
     for (&got, expected) in fast.contribution.iter().zip(contributions) {
-        compare("worth", f64::from(got), expected, case.tolerance * largest);
+        compare(
+            "contribution",
+            f64::from(got),
+            expected,
+            case.tolerance * most,
+        );
     }
-    failures
 }
 
 #[test]
-fn gradients_and_worths_are_the_oracles() {
-    let mut failures = Vec::new();
+fn gradients_and_contributions_are_the_oracles() {
+    let mut failures = Failures::default();
     let losses = [Loss::L2, Loss::L1].into_iter().cycle();
     let edges: Vec<_> = Coverage::EACH.into_iter().zip(losses).collect();
     for case in cases() {
         for &(coverage, loss) in &edges {
-            failures.extend(gradient_failures(&case, coverage, 1.5, loss));
+            let width = 1.5;
+            compare_gradients(&case, Softness { coverage, width }, loss, &mut failures);
         }
     }
-    report(failures);
+    failures.assert_none();
 }
 
 #[test]
 fn gradients_on_two_mattes_are_the_sums_of_those_on_each() {
-    let mut failures = Vec::new();
-    for (case, coverage) in cases().iter().zip(Coverage::EACH.iter().cycle()) {
-        let softness = Softness {
-            coverage: *coverage,
-            width: 1.5,
-        };
-        let both = differentiated_on_mattes(case, Simd::Auto, softness);
-        let [first, second] = differentiated_one_by_one(case, Simd::Auto, softness);
-        let values = |g: &Gradients| -> Vec<f64> { g.strokes.iter().map(|&v| v.into()).collect() };
-        let [got, first, second] = [&both, &first, &second].map(|g| {
-            let loss = (String::from("loss"), KINDS.len(), g.loss);
-            let mut numbers = numbered(&case.strokes, &values(g));
-            let backdrop = g
-                .backdrop
-                .iter()
-                .map(|&v| (String::from("backdrop"), KINDS.len(), v.into()));
-            numbers.extend(backdrop.chain([loss]));
+    let mut failures = Failures::default();
+    for (case, &coverage) in cases().iter().zip(Coverage::EACH.iter().cycle()) {
+        let width = 1.5;
+        let of_each = differentiated_on_mattes(case, Simd::Auto, Softness { coverage, width });
+        let [both, first, second] = of_each.map(|g| {
+            let mut numbers = numbered(&case.strokes, &wide(&g.strokes));
+            let others = wide(&g.backdrop).into_iter().chain([g.loss]);
+            numbers.extend(others.map(|value| ("backdrop or loss".into(), OTHER, value)));
             numbers
         });
-        let mut largest = [FAINT; KINDS.len() + 1];
-        for (_, kind, value) in first.iter().chain(&second) {
-            largest[*kind] = value.abs().max(largest[*kind]);
-        }
-        for ((name, kind, got), ((.., first), (.., second))) in
-            got.iter().zip(first.iter().zip(&second))
-        {
-            if (got - first - second).abs() > 1e-5 * largest[*kind] || got.is_nan() {
-                failures.push(format!(
-                    "{}, {coverage}: {name}: {got} not {first} + {second}",
-                    case.name
-                ));
-            }
+        let most = largest(&[&first[..], &second].concat());
+        let sums = first.iter().zip(&second).map(|(a, b)| a.2 + b.2);
+        for ((name, kind, got), sum) in both.iter().zip(sums) {
+            let what = || format!("{}, {coverage}: {name}", case.name);
+            failures.compare(what, *got, sum, 1e-5 * most[*kind]);
         }
     }
-    report(failures);
+    failures.assert_none();
 }
 
 proptest! {
@@ -682,11 +630,11 @@ proptest! {
         seed in 0_u64..1 << 40, count in 1_usize..5, width in 1_usize..80, height in 1_usize..50,
     ) {
         let case = random_paths(seed, width, height, count);
-        let softness = Softness { coverage: Coverage::Smoothstep, width: 1.5 };
-        let failures = image_failures(&case, softness);
-        prop_assert!(failures.is_empty(), "{}", failures.join("\n"));
-        let failures = gradient_failures(&case, Coverage::Tanh, 1.5, Loss::L2);
-        prop_assert!(failures.is_empty(), "{}", failures.join("\n"));
+        let mut failures = Failures::default();
+        compare_images(&case, smoothstep(1.5), &mut failures);
+        let tanh = Softness { coverage: Coverage::Tanh, width: 1.5 };
+        compare_gradients(&case, tanh, Loss::L2, &mut failures);
+        prop_assert!(failures.0.is_empty(), "{}", failures.0.join("\n"));
     }
 
     /// A stroke is no other when its line is cut in two, or when a tile sees a part of it alone.
@@ -699,7 +647,7 @@ proptest! {
         let mut cut = whole.clone();
         cut.strokes = Strokes::new();
         cut.strokes.push(StrokeRef { points: &[a, between, b], off: &[false; 3], ..stroke });
-        let softness = Softness { coverage: Coverage::Smoothstep, width: 1.5 };
+        let softness = smoothstep(1.5);
         let [whole, cut] = [whole, cut].map(|case| fast_image(&case, Simd::Auto, softness));
         for (x, y) in whole.planes().iter().flatten().zip(cut.planes().iter().flatten()) {
             prop_assert!((x - y).abs() < 1e-3, "{x} {y}");
@@ -755,36 +703,6 @@ fn deepest_hole(text: &str) -> f64 {
     light.map(depth).fold(f64::MIN, f64::max)
 }
 
-/// The loss rises as its gradient says, by central differences of the fast renderer itself.
-#[test]
-fn gradients_are_central_differences() {
-    let softness = Softness {
-        coverage: Coverage::Smoothstep,
-        width: 3.0,
-    };
-    let mut failures = Vec::new();
-    for case in [random(4, 48, 40, 12), random_paths(4, 48, 40, 6)] {
-        let gradients = differentiated(&case, Simd::Auto, softness, Loss::L2);
-        for (k, &gradient) in gradients.strokes.iter().enumerate() {
-            let step = 2e-3;
-            let loss = |sign: f32| {
-                let mut moved = case.clone();
-                moved.strokes.numbers_mut()[k] += sign * step;
-                differentiated(&moved, Simd::Auto, softness, Loss::L2).loss
-            };
-            let difference = (loss(1.0) - loss(-1.0)) / f64::from(2.0 * step);
-            let gradient = f64::from(gradient);
-            if (difference - gradient).abs() > 2e-5 + 0.02 * gradient.abs() {
-                failures.push(format!(
-                    "{}, number {k}: {gradient} but rises by {difference}",
-                    case.name
-                ));
-            }
-        }
-    }
-    report(failures);
-}
-
 /// Survey of `case`, with at least `least` segments for each line and curve.
 fn surveyed(case: &Case, least: usize, softness: Softness) -> Survey {
     let target = Canvas::from_image(&target(case));
@@ -827,11 +745,8 @@ fn by_place(vertices: &[[f32; 2]], values: impl Fn(usize) -> f64) -> Vec<f64> {
 
 #[test]
 fn surveys_are_the_oracles() {
-    let softness = Softness {
-        coverage: Coverage::Smoothstep,
-        width: 1.5,
-    };
-    let mut failures = Vec::new();
+    let softness = smoothstep(1.5);
+    let mut failures = Failures::default();
     let cases = along_paths()
         .into_iter()
         .chain([random_paths(2, 64, 64, 8), random(2, 64, 64, 8)]);
@@ -849,13 +764,10 @@ fn surveys_are_the_oracles() {
             let vertices = &survey.vertices[range.clone()];
             let mut compare = |what: &str, got: Vec<f64>, expected: Vec<f64>| {
                 let largest = expected.iter().fold(FAINT, |m, v| m.max(v.abs()));
-                for (k, (got, expected)) in got.iter().zip(&expected).enumerate() {
-                    if (got - expected).abs() > case.tolerance * largest || got.is_nan() {
-                        failures.push(format!(
-                            "{}, {least} segments: {what} of vertex {k} of stroke {i}: {got} not {expected}",
-                            case.name
-                        ));
-                    }
+                for (k, (&got, &expected)) in got.iter().zip(&expected).enumerate() {
+                    let name = &case.name;
+                    let what = || format!("{name}, {least} segments: {what} {k} of stroke {i}");
+                    failures.compare(what, got, expected, case.tolerance * largest);
                 }
             };
             for axis in 0..2 {
@@ -874,7 +786,7 @@ fn surveys_are_the_oracles() {
             );
         }
     }
-    report(failures);
+    failures.assert_none();
 }
 
 /// The squared error over the picture does not curve more, after Gauss and Newton, than a vertex is stiff.
@@ -953,37 +865,19 @@ fn every_level_gives_the_same_bits() {
                 coverage,
                 width: 1.25,
             };
+            let bits = |simd| {
+                let gradients = differentiated(&case, simd, softness, Loss::L2);
+                let [on_mattes, ..] = differentiated_on_mattes(&case, simd, softness);
+                [gradients, on_mattes].map(|g| {
+                    let values = g.strokes.iter().chain(&g.backdrop).chain(&g.contribution);
+                    let bits: Vec<u32> = values.map(|v| v.to_bits()).collect();
+                    (bits, g.loss.to_bits())
+                })
+            };
             let narrowest = Simd::available().next_back().unwrap();
-            let expected = differentiated(&case, narrowest, softness, Loss::L2);
-            let on_mattes = differentiated_on_mattes(&case, narrowest, softness);
+            let expected = bits(narrowest);
             for simd in Simd::available().filter(|&simd| simd != narrowest) {
-                let got = differentiated(&case, simd, softness, Loss::L2);
-                let bits = |g: &Gradients| -> Vec<u32> {
-                    let strokes = g.strokes.iter();
-                    strokes
-                        .chain(&g.backdrop)
-                        .chain(&g.contribution)
-                        .map(|v| v.to_bits())
-                        .collect()
-                };
-                assert_eq!(
-                    bits(&got),
-                    bits(&expected),
-                    "{simd}, {coverage}, {}",
-                    case.name
-                );
-                assert_eq!(
-                    bits(&differentiated_on_mattes(&case, simd, softness)),
-                    bits(&on_mattes),
-                    "{simd}, {coverage}, {} on two mattes",
-                    case.name
-                );
-                assert_eq!(
-                    got.loss.to_bits(),
-                    expected.loss.to_bits(),
-                    "{simd}, {coverage}, {}",
-                    case.name
-                );
+                assert!(bits(simd) == expected, "{simd}, {coverage}, {}", case.name);
             }
         }
     }
@@ -994,16 +888,11 @@ fn every_number_of_threads_gives_the_same_bits() {
     let mut case = random(1, 200, 150, 300);
     case.strokes
         .append(&mut random_paths(1, 200, 150, 100).strokes);
-    let softness = Softness {
-        coverage: Coverage::Smoothstep,
-        width: 1.25,
-    };
+    let softness = smoothstep(1.25);
     let with_threads = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        let gradients = pool.install(|| differentiated(&case, Simd::Auto, softness, Loss::L2));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let differentiate = || differentiated(&case, Simd::Auto, softness, Loss::L2);
+        let gradients = pool.build().unwrap().install(differentiate);
         (
             gradients.strokes,
             gradients.contribution,
@@ -1018,10 +907,7 @@ fn every_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn strokes_with_numbers_that_are_not_finite_draw_nothing_and_spoil_nothing() {
-    let softness = Softness {
-        coverage: Coverage::Smoothstep,
-        width: 1.0,
-    };
+    let softness = smoothstep(1.0);
     for clean in [random(2, 40, 40, 5), random_paths(2, 40, 40, 5)] {
         let expected = fast_image(&clean, Simd::Auto, softness);
         let gradients = differentiated(&clean, Simd::Auto, softness, Loss::L2);

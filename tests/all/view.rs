@@ -7,12 +7,15 @@ use std::process::{Child, ChildStderr, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::support::{Place, STROKEFIT, committed, installed, of_strokes, stderr};
+use crate::support::{self, Place, STROKEFIT, Words, assert_says, installed, of_strokes, within};
 use serde_json::Value;
+use strokefit::fit::Fitter;
+use strokefit::image::Image;
+use strokefit::verify;
 
 /// Picture that is drawn.
-fn sample() -> String {
-    committed("samples/coffee-300.png")
+fn sample() -> Image {
+    support::sample("coffee-300")
 }
 
 /// The program with a page, in a folder of its own.
@@ -25,10 +28,10 @@ struct Program {
 }
 
 impl Program {
-    fn start(place: &Place, args: &[&str]) -> Self {
+    fn start(place: &Place, args: &str) -> Self {
         let mut child = place
             .command(STROKEFIT)
-            .args(args)
+            .args(args.words())
             .stdin(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
@@ -57,19 +60,19 @@ impl Program {
         (status, answer[end + 4..].to_vec())
     }
 
-    fn get(&self, name: &str) -> (u16, Vec<u8>) {
+    fn ask(&self, method: &str, name: &str) -> (u16, Vec<u8>) {
         let Self { host, root, .. } = self;
         self.send(&format!(
-            "GET {root}{name} HTTP/1.1\r\nHost: {host}\r\n\r\n"
+            "{method} {root}{name} HTTP/1.1\r\nHost: {host}\r\n\r\n"
         ))
     }
 
+    fn get(&self, name: &str) -> (u16, Vec<u8>) {
+        self.ask("GET", name)
+    }
+
     fn post(&self, name: &str) -> u16 {
-        let Self { host, root, .. } = self;
-        self.send(&format!(
-            "POST {root}{name} HTTP/1.1\r\nHost: {host}\r\n\r\n"
-        ))
-        .0
+        self.ask("POST", name).0
     }
 
     fn state(&self) -> Value {
@@ -85,10 +88,8 @@ impl Program {
             if wanted(&state) {
                 return state;
             }
-            assert!(
-                start.elapsed() < Duration::from_secs(120),
-                "never: {state:.300}"
-            );
+            let is_late = start.elapsed() > Duration::from_secs(120);
+            assert!(!is_late, "never: {state:.300}");
             thread::sleep(Duration::from_millis(20));
         }
     }
@@ -112,45 +113,33 @@ impl Drop for Program {
 /// A folder with a drawing `a.svg` of the sample.
 fn drawn() -> Place {
     let place = Place::new();
-    let draft = ["--strokes", "80", "--preset", "draft"];
-    place.done(&[&["fit", &sample(), "-q", "-o", "a.svg"], &draft[..]].concat());
+    place.done("fit @samples/coffee-300.png -q -o a.svg --strokes 80 --preset draft");
     place
 }
 
 /// A fit of the sample to `a.svg`, with the words of a line as options.
 fn fitting(place: &Place, options: &str) -> Program {
-    let sample = sample();
-    let mut args = vec!["fit", &sample, "-o", "a.svg"];
-    args.extend(options.split(' '));
-    Program::start(place, &args)
+    Program::start(
+        place,
+        &format!("fit @samples/coffee-300.png -o a.svg {options}"),
+    )
 }
 
 fn strokes(state: &Value) -> usize {
-    let stages = state["scene"]["stages"].as_array().unwrap();
-    stages
-        .iter()
-        .map(|stage| stage.as_array().unwrap().len())
-        .sum()
+    let stages = state["scene"]["stages"].as_array().unwrap().iter();
+    stages.map(|stage| stage.as_array().unwrap().len()).sum()
 }
 
 #[test]
 fn the_page_needs_nothing_from_elsewhere() {
     let place = drawn();
-    let program = Program::start(&place, &["view", "a.svg", &sample()]);
-    for name in [
-        "",
-        "page.css",
-        "page.js",
-        "viewer.js",
-        "chart.js",
-        "choice.js",
-        "describe.js",
-        "edits.js",
-        "lens.js",
-        "palette.js",
-        "picture.js",
-        "swatches.js",
-    ] {
+    let program = Program::start(&place, "view a.svg @samples/coffee-300.png");
+    let scripts = [
+        "page", "viewer", "chart", "choice", "describe", "edits", "lens", "palette", "picture",
+        "swatches",
+    ];
+    let scripts = scripts.map(|script| format!("{script}.js"));
+    for name in scripts.iter().map(String::as_str).chain(["", "page.css"]) {
         let (status, body) = program.get(name);
         assert_eq!(status, 200, "{name}");
         // The namespace of SVG is a name; nothing is there.
@@ -166,7 +155,7 @@ fn the_page_needs_nothing_from_elsewhere() {
 #[test]
 fn a_file_is_shown_stroke_by_stroke_and_given_back() {
     let place = drawn();
-    let program = Program::start(&place, &["view", "a.svg"]);
+    let program = Program::start(&place, "view a.svg");
     let state = program.state();
     assert_eq!(strokes(&state), 80);
     assert_eq!(
@@ -185,32 +174,26 @@ fn a_file_is_shown_stroke_by_stroke_and_given_back() {
 #[test]
 fn only_who_was_told_the_address_gets_an_answer() {
     let place = drawn();
-    let program = Program::start(&place, &["view", "a.svg"]);
+    let program = Program::start(&place, "view a.svg");
     let Program { host, root, .. } = &program;
-    let status = |head: &str| program.send(&format!("{head}\r\n\r\n")).0;
-    assert_eq!(status(&format!("GET / HTTP/1.1\r\nHost: {host}")), 404);
-    assert_eq!(
-        status(&format!(
-            "GET /{}/ HTTP/1.1\r\nHost: {host}",
-            "0".repeat(32)
-        )),
-        404
-    );
-    // A name of somebody else's that resolves to this machine, and no name at all.
-    assert_eq!(
-        status(&format!("GET {root} HTTP/1.1\r\nHost: evil.example")),
-        421
-    );
-    assert_eq!(status(&format!("GET {root} HTTP/1.1\r\nX: y")), 421);
-    // A foreign page that somehow knows the address.
-    let foreign =
-        format!("POST {root}done HTTP/1.1\r\nHost: {host}\r\nOrigin: http://evil.example");
-    assert_eq!(status(&foreign), 404);
-    assert_eq!(
-        status(&format!("DELETE {root} HTTP/1.1\r\nHost: {host}")),
-        405
-    );
-    assert_eq!(status("nonsense"), 400);
+    let zeros = "0".repeat(32);
+    for (request, status) in [
+        (format!("GET / HTTP/1.1\r\nHost: {host}"), 404),
+        (format!("GET /{zeros}/ HTTP/1.1\r\nHost: {host}"), 404),
+        // A name of somebody else's that resolves to this machine, and no name at all.
+        (format!("GET {root} HTTP/1.1\r\nHost: evil.example"), 421),
+        (format!("GET {root} HTTP/1.1\r\nX: y"), 421),
+        // A foreign page that somehow knows the address.
+        (
+            format!("POST {root}done HTTP/1.1\r\nHost: {host}\r\nOrigin: http://evil.example"),
+            404,
+        ),
+        (format!("DELETE {root} HTTP/1.1\r\nHost: {host}"), 405),
+        ("nonsense".into(), 400),
+    ] {
+        let got = program.send(&format!("{request}\r\n\r\n")).0;
+        assert_eq!(got, status, "{request}");
+    }
     assert_eq!(program.get("").0, 200);
     assert_eq!(program.finish(), Some(0));
 }
@@ -218,10 +201,8 @@ fn only_who_was_told_the_address_gets_an_answer() {
 #[test]
 fn a_fit_is_seen_to_grow_and_can_be_stopped() {
     let place = Place::new();
-    let program = fitting(
-        &place,
-        "--strokes 3000 --preset best --view --report r.json",
-    );
+    let options = "--strokes 3000 --preset best --view --report r.json";
+    let program = fitting(&place, options);
     let seen = program.state_with(|state| state["version"].as_u64() >= Some(3));
     assert_eq!(seen["finished"], false);
     assert!(strokes(&seen) > 0 && !seen["curve"].as_array().unwrap().is_empty());
@@ -255,31 +236,23 @@ fn strokes_can_be_added_while_it_runs_and_after() {
 #[test]
 fn watching_changes_no_byte() {
     let place = Place::new();
-    let sample = sample();
-    let args = ["fit", &sample, "-q", "--strokes", "300", "-o"];
-    place.done(&[&args[..], &["a.svg"]].concat());
-    let program = Program::start(&place, &[&args[..], &["b.svg", "--view"]].concat());
+    let fit = "fit @samples/coffee-300.png -q --strokes 300 -o";
+    place.done(&format!("{fit} a.svg"));
+    let program = Program::start(&place, &format!("{fit} b.svg --view"));
     program.state_with(|state| state["finished"] == true);
     assert_eq!(program.finish(), Some(0));
-    let read = |name| place.bytes(name);
-    assert!(read("a.svg") == read("b.svg"));
+    assert!(place.bytes("a.svg") == place.bytes("b.svg"));
 }
 
 #[test]
 fn nobody_looks_at_a_fit_that_nobody_watches() {
-    use strokefit::fit::{Config, Fitter};
-    let picture = strokefit::image::Image::open(sample()).unwrap();
+    let picture = sample();
     let viewer = strokefit::view::Viewer::open().unwrap();
     viewer.begin("", Some(&picture)).unwrap();
-    let budget = of_strokes(50);
-    let config = Config {
-        budget,
-        ..Config::default()
-    };
-    let fit = Fitter::new(config)
-        .observer(&mut viewer.watch(&mut ()))
-        .fit(&picture)
-        .unwrap();
+    let mut nobody = ();
+    let mut observer = viewer.watch(&mut nobody);
+    let fitter = Fitter::new(within(of_strokes(50))).observer(&mut observer);
+    let fit = fitter.fit(&picture).unwrap();
     viewer.show(&fit.scene, "<svg/>");
     let address = viewer.address();
     let (host, root) = address["http://".len()..].split_once('/').unwrap();
@@ -288,8 +261,7 @@ fn nobody_looks_at_a_fit_that_nobody_watches() {
     let mut answer = String::new();
     stream.read_to_string(&mut answer).unwrap();
     // The finished drawing is the first that was shown, although every iteration was noted.
-    assert!(answer.contains("\"version\":1,"), "{answer:.600}");
-    assert!(answer.contains("\"time_s\""), "{answer:.600}");
+    assert_says(&answer, &["\"version\":1,", "\"time_s\""]);
 }
 
 /// The page as Chromium has it after its script has run; `None` without Chromium.
@@ -298,11 +270,8 @@ fn page(program: &Program, hash: &str) -> Option<String> {
     let address = format!("http://{}{}#{hash}", program.host, program.root);
     // Chromium counts virtual time, and on a busy machine now and then ends before the script does.
     let mut tries = (0..5).map(|_| dump(&chromium, &address));
-    Some(
-        tries
-            .find(|dom| dom.contains("data-ready=\"true\""))
-            .expect("the page never was ready"),
-    )
+    let ready = tries.find(|dom| dom.contains("data-ready=\"true\""));
+    Some(ready.expect("the page never was ready"))
 }
 
 fn dump(chromium: &Path, address: &str) -> String {
@@ -329,34 +298,23 @@ fn text<'a>(dom: &'a str, id: &str) -> &'a str {
 fn chromium_shows_strokes_stages_and_fidelity() {
     let place = drawn();
     let svg = place.text("a.svg");
-    let program = Program::start(&place, &["view", "a.svg", &sample()]);
+    let program = Program::start(&place, "view a.svg @samples/coffee-300.png");
     let Some(dom) = page(&program, "") else {
         return;
     };
     assert_eq!(text(&dom, "shown-count"), "80 of 80");
-    let db: f64 = text(&dom, "shown-db")
-        .split(' ')
-        .next()
-        .unwrap()
-        .parse()
-        .unwrap();
-    let picture = strokefit::image::Image::open(sample()).unwrap();
-    let fidelity = strokefit::verify::fidelity(&svg, &picture).unwrap();
-    assert!(
-        (db - fidelity.psnr_db).abs() < 0.7,
-        "{db} is not {}",
-        fidelity.psnr_db
-    );
+    let shown = text(&dom, "shown-db").split(' ').next().unwrap();
+    let shown: f64 = shown.parse().unwrap();
+    let db = verify::fidelity(&svg, &sample()).unwrap().psnr_db;
+    assert!((shown - db).abs() < 0.7, "{shown} is not {db}");
 
     let dom = page(&program, "shown=30&hidden=1&stroke=12").unwrap();
     assert_eq!(text(&dom, "shown-count"), "30 of 80");
     assert!(dom.contains("12 of 80, stage"), "{dom}");
     let first = svg.find("Stage 1: ").map(|at| &svg[at + 9..]).unwrap();
     let hidden: usize = first.split(' ').next().unwrap().parse().unwrap();
-    assert_eq!(
-        text(&dom, "shown-label"),
-        format!("{} strokes", 30 - hidden)
-    );
+    let seen = format!("{} strokes", 30 - hidden);
+    assert_eq!(text(&dom, "shown-label"), seen);
 
     // Single strokes are left out, and the picture that is asked for is the large one.
     let dom = page(&program, "veiled=3,5&gone=7&large=residual&stroke=3").unwrap();
@@ -373,20 +331,14 @@ fn chromium_shows_strokes_stages_and_fidelity() {
 #[test]
 fn an_svg_by_another_program_is_called_so() {
     let place = Place::new();
-    let traced = committed("tests/data/chelsea-traced.svg");
-    let output = place.run(&["view", &traced]);
-    assert_eq!(output.status.code(), Some(1));
-    let said = stderr(&output);
-    assert!(said.contains("no drawing by strokefit"), "{said}");
-    assert!(said.contains("hint: strokefit check"), "{said}");
+    let said = place.said("view @tests/data/chelsea-traced.svg", 1);
+    let words = ["no drawing by strokefit", "hint: strokefit check"];
+    assert_says(&said, &words);
 }
 
 #[test]
 fn a_drawing_and_a_picture_of_another_shape_are_refused() {
     let place = drawn();
-    let square = image::RgbImage::new(20, 20);
-    square.save(place.path("square.png")).unwrap();
-    let output = place.run("view a.svg square.png");
-    assert_eq!(output.status.code(), Some(1));
-    assert!(stderr(&output).contains("aspect"));
+    place.picture("square.png", 20, 20);
+    assert_says(&place.said("view a.svg square.png", 1), &["aspect"]);
 }
