@@ -1,12 +1,12 @@
 //! The reference renderer against itself: gradients are central differences, and leaving a stroke
 //! out is what its removal does. On random scenes, and on the degenerate ones that a fit runs into.
 
-use crate::support::areas::{areas, paints};
+use crate::support::areas::{Rings, areas, paints};
 use crate::support::paths::paths;
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
-use strokefit::render::{PARAMS, Paint, STYLE};
+use strokefit::render::{PARAMS, STYLE};
 use strokefit::{rng, scene};
 
 /// The step of a central difference, and the error that it is good for.
@@ -64,28 +64,24 @@ fn random() -> Vec<(String, Scene)> {
 
 /// A stroke of a path of every kind, with ordinary ones around.
 fn of_paths() -> Vec<(String, Scene)> {
-    let with = |path: &scene::Path| Stroke {
-        points: path
-            .points()
-            .iter()
-            .map(|p| [p.at.x, p.at.y].map(f64::from))
-            .collect(),
-        off: path.points().iter().map(|p| !p.is_on).collect(),
-        closed: path.is_closed(),
-        ..stroke(9, 0, 8.0)
+    let case = |(name, path): (&str, scene::Path)| {
+        let points = path.points();
+        let kind = Stroke {
+            points: points.iter().map(|p| [p.at.x, p.at.y]).collect(),
+            off: points.iter().map(|p| !p.is_on).collect(),
+            closed: path.is_closed(),
+            ..stroke(9, 0, 8.0)
+        };
+        (name.to_owned(), around(kind))
     };
     // Wider than the picture by a bit: a pixel centre on the axis of a symmetric curve is as near to two segments, and has a
     // kink there.
-    let paths = paths(9.1, 7.0).into_iter();
-    paths
-        .map(|(name, path)| (name.to_owned(), around(with(&path))))
-        .collect()
+    paths(9.1, 7.0).into_iter().map(case).collect()
 }
 
-/// An area of every kind, with ordinary strokes around.
+/// An area of every kind, and one with a gradient of every kind, with ordinary strokes around.
 fn of_areas() -> Vec<(String, Scene)> {
-    let areas = areas(9.1, 7.0).into_iter();
-    let case = |rings: crate::support::areas::Rings| {
+    let case = |rings: Rings| {
         let area = Stroke {
             points: rings.points.iter().map(|p| p.map(f64::from)).collect(),
             off: rings.off,
@@ -95,17 +91,14 @@ fn of_areas() -> Vec<(String, Scene)> {
         };
         (rings.name, around(area))
     };
-    areas.map(case).collect()
-}
-
-/// An area with a gradient of every kind, with ordinary strokes around.
-fn of_paints() -> Vec<(String, Scene)> {
-    let (_, mut plain) = of_areas().swap_remove(0);
-    let case = |(name, paint): (&str, Paint)| {
-        plain.strokes[1].paint = Some(paint);
-        (name.to_owned(), plain.clone())
-    };
-    paints().into_iter().map(case).collect()
+    let mut cases: Vec<_> = areas(9.1, 7.0).into_iter().map(case).collect();
+    let plain = cases[0].1.clone();
+    cases.extend(paints().into_iter().map(|(name, paint)| {
+        let mut painted = plain.clone();
+        painted.strokes[1].paint = Some(paint);
+        (name.to_owned(), painted)
+    }));
+    cases
 }
 
 fn around(kind: Stroke) -> Scene {
@@ -119,54 +112,31 @@ fn degenerate() -> Vec<(String, Scene)> {
         points: vec![a, b],
         ..plain.clone()
     };
+    let of = |radius, opacity| Stroke {
+        radius,
+        opacity,
+        ..plain.clone()
+    };
     let kinds = [
         ("zero length", between(plain.points[0], plain.points[0])),
-        (
-            "radius zero",
-            Stroke {
-                radius: 0.0,
-                ..plain.clone()
-            },
-        ),
+        ("radius zero", of(0.0, plain.opacity)),
         ("off canvas", between([-90.0, 3.0], [-80.0, 4.0])),
-        (
-            "invisible",
-            Stroke {
-                opacity: 0.0,
-                ..plain.clone()
-            },
-        ),
-        (
-            "opaque",
-            Stroke {
-                opacity: 1.0,
-                radius: 9.0,
-                ..plain.clone()
-            },
-        ),
+        ("invisible", of(plain.radius, 0.0)),
+        ("opaque", of(9.0, 1.0)),
         ("through pixel centres", between([1.5, 2.5], [7.5, 2.5])),
         ("dot on a pixel centre", between([3.5, 3.5], [3.5, 3.5])),
     ];
-    kinds
-        .map(|(name, kind)| (name.to_owned(), around(kind)))
-        .into()
+    let named = kinds.map(|(name, kind)| (name.to_owned(), around(kind)));
+    named.into()
 }
 
-fn all() -> impl Iterator<Item = (String, Scene)> {
-    random()
-        .into_iter()
-        .chain(degenerate())
-        .chain(of_paths())
-        .chain(of_areas())
-        .chain(of_paints())
+fn all() -> Vec<(String, Scene)> {
+    [random(), degenerate(), of_paths(), of_areas()].concat()
 }
 
 fn target(scene: &Scene) -> Vec<Rgb> {
-    let value = |i, k| draw(77, i, k);
     let pixels = 0..(scene.width * scene.height) as u64;
-    pixels
-        .map(|i| [value(i, 0), value(i, 1), value(i, 2)])
-        .collect()
+    pixels.map(|i| [0, 1, 2].map(|k| draw(77, i, k))).collect()
 }
 
 fn flat(strokes: &[Stroke], background: Rgb) -> Vec<f64> {
@@ -259,17 +229,9 @@ fn expect_central_differences(scenes: Vec<(String, Scene)>, eps: f64, accuracy: 
 }
 
 #[test]
-fn gradients_are_central_differences_in_random_scenes() {
+fn gradients_are_central_differences() {
     expect_central_differences(random(), 1e-3, SMOOTH);
-}
-
-#[test]
-fn gradients_are_central_differences_in_degenerate_scenes() {
     expect_central_differences(degenerate(), 1e-3, KINKED);
-}
-
-#[test]
-fn gradients_are_central_differences_along_paths() {
     // With an ε, a line there and one back would be farther than each other by turns.
     expect_central_differences(of_paths(), 0.0, KINKED);
 }
@@ -282,10 +244,8 @@ fn gradients_are_finite_without_eps() {
             let d_canvas = vec![[1.0; 3]; scene.width * scene.height];
             let gradients = reference.gradients(&scene, &d_canvas);
             let all = flat(&gradients.strokes, gradients.background);
-            assert!(
-                all.iter().all(|g| g.is_finite()),
-                "{name}, {coverage}: {all:?}"
-            );
+            let is_finite = all.iter().all(|g| g.is_finite());
+            assert!(is_finite, "{name}, {coverage}: {all:?}");
         }
     }
 }

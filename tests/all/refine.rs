@@ -2,9 +2,8 @@
 //! and what cannot be refined is refused.
 
 use std::collections::BTreeSet;
-use std::fs;
 
-use crate::support::{Place, assert_refused, committed, stderr};
+use crate::support::{Place, assert_refused, assert_says, committed};
 use strokefit::svg;
 
 /// The cat in 8 colours, traced with the `vtracer` crate 0.6.5 at its defaults, but for speckles of 16 px,
@@ -16,9 +15,14 @@ const NAMESPACE: &str = "xmlns=\"http://www.w3.org/2000/svg\"";
 /// A folder with a sample as `in.png`.
 fn with_sample(name: &str) -> Place {
     let place = Place::new();
-    let sample = fs::read(committed(&format!("samples/{name}.png")));
+    let sample = std::fs::read(committed(&format!("samples/{name}.png")));
     place.file("in.png", sample.unwrap());
     place
+}
+
+/// A folder with the coffee.
+fn with_coffee() -> Place {
+    with_sample("coffee-300")
 }
 
 /// A folder with the cat, and what another program traced of it.
@@ -36,12 +40,8 @@ fn draft(place: &Place, words: &str) -> f64 {
     report["fidelity"]["psnr_db"].as_f64().unwrap()
 }
 
-fn read(place: &Place, name: &str) -> String {
-    place.text(name)
-}
-
 fn layers(place: &Place, name: &str) -> Vec<usize> {
-    let scene = svg::read(&read(place, name)).unwrap();
+    let scene = svg::read(&place.text(name)).unwrap();
     scene.stages.iter().map(|stage| stage.marks.len()).collect()
 }
 
@@ -59,29 +59,25 @@ fn put_into<'a>(base: &str, refined: &'a str) -> &'a str {
 
 #[test]
 fn strokes_with_a_plus_count_beyond_those_of_the_base() {
-    let place = with_sample("coffee-300");
+    let place = with_coffee();
     draft(&place, "fit in.png --strokes +60 -o base.svg");
     assert_eq!(strokes(&place, "base.svg"), 60);
     draft(&place, "refine base.svg in.png --strokes +40 -o more.svg");
     assert_eq!(strokes(&place, "more.svg"), 100);
     // As many in all as there are is no change, which is said with what would be one.
-    let full = place.done("refine base.svg in.png --strokes 60 -o full.svg");
+    let full = place.said("refine base.svg in.png --strokes 60 -o full.svg", 0);
     assert_eq!(strokes(&place, "full.svg"), 60);
-    let line = stderr(&full);
-    assert!(
-        line.contains("hint:") && line.contains("--strokes +60"),
-        "{line}"
-    );
+    assert_says(&full, &["hint:", "--strokes +60"]);
     let place = traced();
     draft(&place, "refine traced.svg in.png --strokes +20 -o a.svg");
     draft(&place, "refine a.svg in.png --strokes +10 -o b.svg");
-    let more = read(&place, "b.svg");
+    let more = place.text("b.svg");
     assert_eq!(put_into(TRACED, &more).matches("<path").count(), 30);
 }
 
 #[test]
 fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
-    let place = with_sample("coffee-300");
+    let place = with_coffee();
     let whole = draft(&place, "fit in.png --strokes 300 -o whole.svg");
     draft(&place, "fit in.png --strokes 150 -o half.svg");
     let both = draft(&place, "refine half.svg in.png --strokes 300 -o both.svg");
@@ -92,7 +88,7 @@ fn a_drawing_in_two_goes_is_as_good_as_one_in_one_go() {
 
 #[test]
 fn a_drawing_of_too_many_strokes_is_shortened() {
-    let place = with_sample("coffee-300");
+    let place = with_coffee();
     let few = draft(&place, "fit in.png --strokes 60 -o few.svg");
     draft(&place, "fit in.png --strokes 300 -o many.svg");
     let shortened = draft(&place, "refine many.svg in.png --strokes 60 -o a.svg");
@@ -114,7 +110,7 @@ fn a_drawing_of_too_many_strokes_is_shortened() {
 /// there are not planned again, and the drawing ends as good as the whole one.
 #[test]
 fn the_stages_that_are_missing_are_added() {
-    let place = with_sample("coffee-300");
+    let place = with_coffee();
     let whole = draft(&place, "fit in.png --no-polish --strokes 200 -o whole.svg");
     let counts = layers(&place, "whole.svg");
     let first: usize = counts[..5].iter().sum();
@@ -133,7 +129,7 @@ fn the_stages_that_are_missing_are_added() {
 
 #[test]
 fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
-    let place = with_sample("coffee-300");
+    let place = with_coffee();
     let head = format!(r#"<svg {NAMESPACE} width="300" height="200" viewBox="0 0 300 200">"#);
     let paths = ["M9 9L40 90", "M-90 9L-40 90", "M200 9L9 190"];
     let layer = |(k, d): (usize, &str)| {
@@ -146,7 +142,7 @@ fn a_layer_that_nothing_is_seen_of_goes_and_the_others_are_numbered_on() {
     place.file("three.svg", format!("{head}{body}</svg>"));
     draft(&place, "refine three.svg in.png --psnr 1 -o two.svg");
     assert_eq!(layers(&place, "two.svg"), [1, 1]);
-    assert!(!read(&place, "two.svg").contains("M-90 9"));
+    assert!(!place.text("two.svg").contains("M-90 9"));
     let report = place.report("r.json");
     let records = report["stages"].as_array().unwrap().iter();
     let records: Vec<_> = records.map(|s| (&s["index"], &s["strokes"])).collect();
@@ -174,7 +170,7 @@ fn a_base_that_meets_a_budget_is_written_as_it_is() {
             &format!("refine {base} in.png {budget} -o again.svg"),
         );
         assert!(
-            read(&place, "again.svg") == read(&place, base),
+            place.text("again.svg") == place.text(base),
             "{base} {budget:?}"
         );
     }
@@ -194,7 +190,7 @@ fn a_base_that_is_better_than_its_refinement_is_kept() {
         );
         // The base is translucent, and stays only where it may.
         draft(&place, &format!("refine a.svg {within} --opaque -o c.svg"));
-        assert!(!read(&place, "c.svg").contains("opacity"));
+        assert!(!place.text("c.svg").contains("opacity"));
     }
 }
 
@@ -204,7 +200,7 @@ fn a_traced_picture_gains_and_stays_as_it_is() {
     let before = draft(&place, "refine traced.svg in.png --psnr 1 -o same.svg");
     let after = draft(&place, "refine traced.svg in.png --strokes 200 -o a.svg");
     assert!(after > before + 3.0, "from {before} to {after} dB");
-    let refined = read(&place, "a.svg");
+    let refined = place.text("a.svg");
     assert_eq!(put_into(TRACED, &refined).matches("<path").count(), 200);
     let record = place.report("r.json");
     assert_eq!(
@@ -226,7 +222,7 @@ fn strokes_laid_on_a_file_are_taken_up_again() {
         "refine first.svg in.png --strokes 200 -o second.svg",
     );
     assert_eq!(place.report("r.json")["base"]["strokes"], 100);
-    let second = read(&place, "second.svg");
+    let second = place.text("second.svg");
     assert_eq!(put_into(TRACED, &second).matches("<path").count(), 200);
     let once = draft(&place, "refine traced.svg in.png --strokes 200 -o once.svg");
     assert!(twice > once - 0.3, "{twice} dB in two goes, {once} in one");
@@ -234,11 +230,11 @@ fn strokes_laid_on_a_file_are_taken_up_again() {
 
 #[test]
 fn a_frozen_drawing_stays_as_it_is_and_stays_a_drawing() {
-    let place = with_sample("coffee-300");
+    let place = with_coffee();
     let before = draft(&place, "fit in.png --strokes 60 -o own.svg");
     let refine = "refine own.svg in.png --freeze-base --strokes 60 -o more.svg";
     let after = draft(&place, refine);
-    put_into(&read(&place, "own.svg"), &read(&place, "more.svg"));
+    put_into(&place.text("own.svg"), &place.text("more.svg"));
     assert_eq!(strokes(&place, "more.svg"), 120);
     assert!(after > before, "from {before} to {after} dB");
 }
@@ -257,7 +253,7 @@ fn the_root_does_not_change_the_strokes() {
     );
     place.file("base.svg", &base);
     let db = draft(&place, "refine base.svg in.png --strokes 30 -o out.svg");
-    let refined = read(&place, "out.svg");
+    let refined = place.text("out.svg");
     let layers = put_into(&base, &refined);
     assert!(
         layers.contains("<g id=\"stage-4\"") && !layers.contains("stage-3"),
@@ -278,10 +274,8 @@ fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
         "<svg {NAMESPACE} viewBox=\"0 0 30 20\"><text>a</text><image href=\"/etc/hostname\"/><g/></svg>"
     );
     place.file("base.svg", base);
-    let said = stderr(&place.done("refine base.svg in.png -o out.svg --strokes 3"));
-    for words in ["keeping 3 elements", "fonts", "other files"] {
-        assert!(said.contains(words), "no {words:?} in {said}");
-    }
+    let said = place.said("refine base.svg in.png -o out.svg --strokes 3", 0);
+    assert_says(&said, &["keeping 3 elements", "fonts", "other files"]);
 }
 
 #[test]
@@ -290,7 +284,11 @@ fn the_page_keeps_its_width() {
     place.picture("in.png", 60, 40);
     draft(&place, "fit in.png --strokes 5 --width 120mm -o own.svg");
     draft(&place, "refine own.svg in.png --strokes 9 -o more.svg");
-    assert!(read(&place, "more.svg").contains("width=\"120mm\" height=\"80mm\""));
+    assert!(
+        place
+            .text("more.svg")
+            .contains("width=\"120mm\" height=\"80mm\"")
+    );
 }
 
 /// Parts that are clear in both stay clear, and no background is drawn.
@@ -301,7 +299,7 @@ fn transparency_is_kept() {
     draft(&place, "refine own.svg in.png --strokes 60 -o more.svg");
     let alpha = &place.report("r.json")["alpha"];
     assert!(alpha["black_db"].as_f64().unwrap() > 25.0, "{alpha}");
-    assert!(!read(&place, "more.svg").contains("<rect"));
+    assert!(!place.text("more.svg").contains("<rect"));
 }
 
 #[test]
@@ -309,104 +307,59 @@ fn what_cannot_be_refined_is_refused() {
     let place = Place::new();
     place.picture("in.png", 30, 20);
     let svg = |root: &str, inside: &str| format!("<svg {NAMESPACE} {root}>{inside}</svg>");
-    let page = "width=\"30\" height=\"20\"";
+    let of_page = |inside: &str| svg(r#"width="30" height="20""#, inside);
+    let on_root = |attribute: &str| svg(&format!(r#"width="30" height="20" {attribute}"#), "<g/>");
+    let sized =
+        |[width, height]: [&str; 2]| svg(&format!(r#"width="{width}" height="{height}""#), "");
     let nested = "<g>".repeat(3000) + &"</g>".repeat(3000);
-    let bomb =
-        "<!DOCTYPE svg [<!ENTITY a \"haha\"><!ENTITY b \"&a;&a;&a;&a;\"><!ENTITY c \"&c;\">]>";
-    for (name, text, words) in [
-        ("empty.svg", String::new(), "empty"),
-        ("text.svg", "this is no SVG".into(), "no <svg>"),
-        ("html.svg", "<html></html>".into(), "<html>"),
-        (
-            "cut.svg",
-            svg(page, "<g>").replace("</svg>", ""),
-            "ends before </g>",
-        ),
-        ("mixed.svg", svg(page, "<g>"), "not well-formed"),
-        (
-            "alien.svg",
-            svg(page, "").replace("http:", "https:"),
-            "namespace",
-        ),
-        (
-            "other.svg",
-            svg("width=\"30\" height=\"30\"", ""),
-            "aspect ratio",
-        ),
-        (
-            "unit.svg",
-            svg("width=\"30furlong\" height=\"20furlong\"", ""),
-            "viewBox",
-        ),
-        (
-            "percent.svg",
-            svg("width=\"100%\" height=\"100%\"", ""),
-            "viewBox",
-        ),
-        (
-            "faint.svg",
-            svg(&format!("{page} opacity=\"0.5\""), "<g/>"),
-            "root element",
-        ),
-        (
-            "styled.svg",
-            svg(page, "<style>path{fill:red}</style>"),
-            "style sheet",
-        ),
-        (
-            "hidden.svg",
-            svg(&format!("{page} display=\"none\""), ""),
-            "root element",
-        ),
-        ("nested.svg", svg(page, &nested), "nested"),
-        (
-            "bomb.svg",
-            bomb.to_owned() + &svg(page, "<text>&c;</text>"),
-            "entity",
-        ),
-        ("outside.svg", svg(page, "<text>&x;</text>"), "entity"),
+    let bomb = r#"<!DOCTYPE svg [<!ENTITY a "haha"><!ENTITY b "&a;&a;&a;&a;"><!ENTITY c "&c;">]>"#;
+    for (text, words) in [
+        (String::new(), "empty"),
+        ("this is no SVG".into(), "no <svg>"),
+        ("<html></html>".into(), "<html>"),
+        (of_page("<g>").replace("</svg>", ""), "ends before </g>"),
+        (of_page("<g>"), "not well-formed"),
+        (of_page("").replace("http:", "https:"), "namespace"),
+        (sized(["30", "30"]), "aspect ratio"),
+        (sized(["30furlong", "20furlong"]), "viewBox"),
+        (sized(["100%", "100%"]), "viewBox"),
+        (on_root(r#"opacity="0.5""#), "root element"),
+        (on_root(r#"display="none""#), "root element"),
+        (of_page("<style>path{fill:red}</style>"), "style sheet"),
+        (of_page(&nested), "nested"),
+        (bomb.to_owned() + &of_page("<text>&c;</text>"), "entity"),
+        (of_page("<text>&x;</text>"), "entity"),
     ] {
-        place.file(name, text);
-        let refine = ["refine", name, "in.png", "-o", "out.svg"];
-        assert_refused(&place, &refine, 1, &[name, words]);
+        place.file("base.svg", text);
+        let refine = "refine base.svg in.png -o out.svg";
+        assert_refused(&place, refine, 1, &["base.svg", words]);
     }
-}
-
-#[test]
-fn usage_that_makes_no_sense_is_refused() {
-    let place = Place::new();
-    place.picture("in.png", 30, 20);
-    place.file(
-        "base.svg",
-        format!("<svg {NAMESPACE} viewBox=\"0 0 30 20\"/>"),
-    );
+    place.file("base.svg", svg(r#"viewBox="0 0 30 20""#, ""));
     for (refine, words) in [
-        ("refine - - -o out.svg", "standard input"),
-        ("refine base.svg in.png -o base.svg", "overwritten"),
+        ("- - -o out.svg", "standard input"),
+        ("base.svg in.png -o base.svg", "overwritten"),
         (
-            "refine base.svg in.png -o out.svg --background none",
+            "base.svg in.png -o out.svg --background none",
             "--background",
         ),
     ] {
-        assert_refused(&place, refine, 2, &[words]);
+        assert_refused(&place, &format!("refine {refine}"), 2, &[words]);
     }
 }
 
 /// The colours of the strokes of a text, and of its background.
 fn colors(text: &str) -> BTreeSet<&str> {
     let after = |word: &'static str| {
-        text.split(word)
-            .skip(1)
-            .filter_map(|rest| rest.split('"').next())
+        let rests = text.split(word).skip(1);
+        rests.filter_map(|rest| rest.split('"').next())
     };
-    after("stroke=\"")
-        .chain(after("<rect width=\"300\" height=\"200\" fill=\""))
-        .collect()
+    let ground = "<rect width=\"300\" height=\"200\" fill=\"";
+    after("stroke=\"").chain(after(ground)).collect()
 }
 
 #[test]
 fn the_strokes_of_a_base_get_the_few_colours_too() {
-    let place = with_sample("coffee-300");
+    let place = with_coffee();
     draft(&place, "fit in.png --strokes 80 -o base.svg");
     // Also where no stroke is to be added.
     for (strokes, form) in [("120", "plain"), ("80", "plain"), ("120", "smallest")] {
@@ -415,7 +368,7 @@ fn the_strokes_of_a_base_get_the_few_colours_too() {
             &place,
             &format!("refine base.svg in.png {options} -o few.svg"),
         );
-        let few = read(&place, "few.svg");
+        let few = place.text("few.svg");
         assert_eq!(colors(&few).len(), 5, "{strokes} strokes, {form}");
         // In five colours, some strokes are hidden by others of their colour.
         let hidden = place.report("r.json")["dropped"].as_u64().unwrap();
@@ -424,13 +377,13 @@ fn the_strokes_of_a_base_get_the_few_colours_too() {
         assert!(hidden < drawn / 4, "{hidden}");
     }
     // A drawing that has few colours already is left as it is.
-    let strokes = svg::read(&read(&place, "few.svg")).unwrap().len();
+    let strokes = svg::read(&place.text("few.svg")).unwrap().len();
     let options = format!("--colors 5 --strokes {strokes} --form smallest");
     draft(
         &place,
         &format!("refine few.svg in.png {options} -o again.svg"),
     );
-    assert_eq!(read(&place, "again.svg"), read(&place, "few.svg"));
+    assert_eq!(place.text("again.svg"), place.text("few.svg"));
 }
 
 #[test]
@@ -441,7 +394,7 @@ fn only_what_is_laid_on_a_document_gets_few_colours() {
         &place,
         &format!("refine traced.svg in.png {options} -o laid.svg"),
     );
-    let laid = read(&place, "laid.svg");
+    let laid = place.text("laid.svg");
     assert_eq!(
         colors(put_into(TRACED, &laid)),
         ["#1f130b", "#e4caba"].into()
@@ -452,23 +405,23 @@ fn only_what_is_laid_on_a_document_gets_few_colours() {
 fn a_clear_drawing_keeps_few_colours() {
     let place = with_sample("noto-gem");
     draft(&place, "fit in.png --colors 4 --strokes 60 -o clear.svg");
-    assert_eq!(colors(&read(&place, "clear.svg")).len(), 4);
+    assert_eq!(colors(&place.text("clear.svg")).len(), 4);
     let refine = "refine clear.svg in.png --colors 4 --strokes 90 -o more.svg";
     draft(&place, refine);
-    let more = read(&place, "more.svg");
+    let more = place.text("more.svg");
     assert_eq!(colors(&more).len(), 4);
     assert!(!more.contains("<rect"));
     let options = "--palette #29b6f6,#ffffff --strokes 60";
     draft(&place, &format!("fit in.png {options} -o given.svg"));
     assert_eq!(
-        colors(&read(&place, "given.svg")),
+        colors(&place.text("given.svg")),
         ["#29b6f6", "#ffffff"].into()
     );
 }
 
 #[test]
 fn a_base_whose_background_is_not_in_the_palette_is_refused() {
-    let place = with_sample("coffee-300");
+    let place = with_coffee();
     let options = "--background #a95327 --strokes 20";
     draft(&place, &format!("fit in.png {options} -o base.svg"));
     let refine = "refine base.svg in.png -q -o few.svg --palette #ffffff,#000000";
@@ -480,7 +433,7 @@ fn a_base_whose_background_is_not_in_the_palette_is_refused() {
         &format!("refine base.svg in.png {options} -o few.svg"),
     );
     assert_eq!(
-        colors(&read(&place, "few.svg")),
+        colors(&place.text("few.svg")),
         ["#a95327", "#ffffff"].into()
     );
 }

@@ -1,7 +1,9 @@
 //! Shapes and level lines: a circle, an ellipse or a rectangle in a picture comes back as one, and a level line is exactly so.
 
-use crate::support::{committed, picture, rendered};
-use strokefit::fit::{Background, Config, Fitter};
+use std::fs;
+
+use crate::support::{committed, drawn, picture, rendered};
+use strokefit::fit::{Background, Config};
 use strokefit::scene::{Cap, Mark, Marks, Path, PathPoint, Scene, Shape, Stroke};
 use strokefit::svg::{self, Group, WriteOptions};
 use strokefit::verify::{self, Size};
@@ -16,17 +18,26 @@ fn fitted_in(elements: &str, group: Group) -> (Scene, String) {
         r##"<svg xmlns="http://www.w3.org/2000/svg" width="160" height="120"><rect width="160" height="120" fill="#fff"/>{elements}</svg>"##
     );
     let picture = verify::render(&drawing, Size::Scale(4.0), None).unwrap();
+    let file = WriteOptions {
+        group,
+        ..WriteOptions::default()
+    };
     let config = Config {
         background: Background::Color([1.0; 3]),
-        file: WriteOptions {
-            group,
-            ..WriteOptions::default()
-        },
+        file,
         ..Config::default()
     };
-    let fit = Fitter::new(config).fit(&picture.reduced(160, 120)).unwrap();
-    let text = fit.svg();
+    let text = drawn(&picture.reduced(160, 120), &config).svg();
     (svg::read(&text).unwrap(), text)
+}
+
+/// The file that is fitted to a drawing of the plans, and its fidelity, dB.
+fn fitted_plan(name: &str) -> (Scene, String, f64) {
+    let drawing = fs::read_to_string(committed(&format!("tests/data/plans/{name}.svg")));
+    let picture = rendered(&drawing.unwrap());
+    let text = drawn(&picture, &Config::default()).svg();
+    let db = verify::fidelity(&text, &picture).unwrap().psnr_db;
+    (svg::read(&text).unwrap(), text, db)
 }
 
 /// The shapes that are elements of their own.
@@ -34,11 +45,15 @@ fn shapes(scene: &Scene) -> Vec<Shape> {
     scene.marks().filter_map(Mark::shape).collect()
 }
 
+fn circles(scene: &Scene) -> usize {
+    let shapes = shapes(scene).into_iter();
+    let circles = shapes.filter(|shape| matches!(shape, Shape::Circle { .. }));
+    circles.count()
+}
+
 fn is_near(found: [f64; 4], expected: [f64; 4]) -> bool {
-    found
-        .iter()
-        .zip(expected)
-        .all(|(a, b)| (a - b).abs() < 0.15)
+    let mut pairs = found.iter().zip(expected);
+    pairs.all(|(a, b)| (a - b).abs() < 0.15)
 }
 
 #[test]
@@ -74,8 +89,7 @@ fn dots_of_one_colour_are_circles_each_and_holes_stay_holes() {
         r##"<g fill="#c03020"><circle cx="30" cy="30" r="8"/><circle cx="60" cy="30" r="8"/><circle cx="90" cy="30" r="8"/></g>
         <path fill="#2060c0" fill-rule="evenodd" d="M20 60h110v50H20zM50 70h20v20H50z"/>"##,
     );
-    let is_circle = |shape: &&Shape| matches!(shape, Shape::Circle { .. });
-    assert_eq!(shapes(&scene).iter().filter(is_circle).count(), 3, "{text}");
+    assert_eq!(circles(&scene), 3, "{text}");
     let holed = scene.areas().filter(|area| area.rings.len() == 2);
     assert_eq!(holed.count(), 1, "{text}");
 }
@@ -85,8 +99,7 @@ fn a_small_circle_is_no_rectangle() {
     let (scene, text) = fitted(
         r##"<rect x="20" y="20" width="120" height="80" fill="#d0a880"/><g fill="#662113"><circle cx="50.3" cy="60.4" r="3.6"/><circle cx="110.4" cy="60.4" r="3.6"/></g>"##,
     );
-    let is_circle = |shape: &&Shape| matches!(shape, Shape::Circle { .. });
-    assert_eq!(shapes(&scene).iter().filter(is_circle).count(), 2, "{text}");
+    assert_eq!(circles(&scene), 2, "{text}");
 }
 
 #[test]
@@ -165,16 +178,12 @@ fn an_icon_of_one_path_stays_one_and_shapes_alone_are_elements() {
 }
 
 /// Colours of all strokes, in levels, and their widths.
-fn pens(scene: &Scene) -> Vec<([u8; 3], f32)> {
-    let strokes = scene.marks().filter_map(|mark| mark.as_stroke().cloned());
-    strokes
-        .map(|stroke| {
-            (
-                stroke.color.map(|c| (255.0 * c).round() as u8),
-                2.0 * stroke.radius as f32,
-            )
-        })
-        .collect()
+fn pens(scene: &Scene) -> Vec<([u8; 3], f64)> {
+    let pen = |stroke: &Stroke| {
+        let levels = stroke.color.map(|c| (255.0 * c).round() as u8);
+        (levels, 2.0 * stroke.radius)
+    };
+    scene.strokes().map(pen).collect()
 }
 
 #[test]
@@ -207,23 +216,11 @@ fn plans_come_back_as_their_things() {
         // Each piece of a grid line between two bars is a stroke.
         ("bars", [16, 4, 0], 45.5),
     ];
-    for (name, [strokes, areas, circles], least_db) in plans {
-        let drawing = std::fs::read_to_string(committed(&format!("tests/data/plans/{name}.svg")));
-        let picture = rendered(&drawing.unwrap());
-        let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
-        let text = fit.svg();
-        let scene = svg::read(&text).unwrap();
+    for (name, [strokes, areas, least], least_db) in plans {
+        let (scene, text, db) = fitted_plan(name);
         let filled = scene.areas().count();
-        assert!(
-            scene.len() - filled <= strokes && filled <= areas,
-            "{name}: {text}"
-        );
-        let is_circle = |shape: &&Shape| matches!(shape, Shape::Circle { .. });
-        assert!(
-            shapes(&scene).iter().filter(is_circle).count() >= circles,
-            "{name}: {text}"
-        );
-        let db = verify::fidelity(&text, &picture).unwrap().psnr_db;
+        let is_few = scene.len() - filled <= strokes && filled <= areas;
+        assert!(is_few && circles(&scene) >= least, "{name}: {text}");
         assert!(db > least_db, "{name}: {db}");
     }
 }
@@ -252,15 +249,10 @@ fn square_ends_and_mitred_corners_come_back() {
         // The dashes are elements of their own.
         ("chart", 27, [24, 20], 46.0),
     ] {
-        let drawing = std::fs::read_to_string(committed(&format!("tests/data/plans/{name}.svg")));
-        let picture = rendered(&drawing.unwrap());
-        let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
-        let text = fit.svg();
-        let scene = svg::read(&text).unwrap();
+        let (scene, text, db) = fitted_plan(name);
         assert!((least..=most).contains(&scene.len()), "{name}: {text}");
         let found = scene.marks().filter(|mark| mark.is_butt()).count();
         assert!(found >= bands, "{name}: {text}");
-        let db = verify::fidelity(&text, &picture).unwrap().psnr_db;
         assert!(db > least_db, "{name}: {db}");
     }
 }
@@ -292,8 +284,7 @@ fn a_frame_is_a_line_with_corners_and_round_ends_stay_round() {
         background: Background::Color([1.0; 3]),
         ..Config::default()
     };
-    let picture = rendered(&text);
-    let areas = Fitter::new(only_areas).fit(&picture).unwrap().svg();
+    let areas = drawn(&rendered(&text), &only_areas).svg();
     assert!(
         !areas.contains("stroke=") && areas.contains("fill="),
         "{areas}"
@@ -303,9 +294,7 @@ fn a_frame_is_a_line_with_corners_and_round_ends_stay_round() {
 /// Staves and stems lie between rows and columns of pixels, where they look grey and 2 px wide.
 #[test]
 fn lines_between_rows_have_the_colour_of_their_pen() {
-    let picture = picture("music.png");
-    let fit = Fitter::new(Config::default()).fit(&picture).unwrap();
-    let text = fit.svg();
+    let text = drawn(&picture("music.png"), &Config::default()).svg();
     let scene = svg::read(&text).unwrap();
     assert!(scene.len() <= 96, "{text}");
     let pens = pens(&scene);
