@@ -8,7 +8,8 @@
 //! skeleton   the middle of each shape, as a graph
 //! lines      the graph's edges, joined to long lines that run through crossings
 //! bridges    lines that go on below others, and rings
-//! spline     corners and control points
+//! chain      runs of samples as lines and quadratic splines
+//! spline     the corners of a line, and chains between them
 //! gain       the share of the residual that each stroke explains
 //! strokes    all of that
 //! fill       filled shapes, stacked
@@ -21,6 +22,7 @@
 
 mod areas;
 mod bridges;
+mod chain;
 mod choice;
 mod even;
 mod fill;

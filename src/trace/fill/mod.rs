@@ -24,7 +24,6 @@ mod outline;
 mod overlaps;
 mod regions;
 mod shades;
-mod span;
 mod stack;
 mod translucent;
 

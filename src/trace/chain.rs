@@ -1,33 +1,170 @@
-//! Spans: a line or a quadratic spline along some samples of an outline, whose ends are given.
+//! Chains: a run of samples as lines and quadratic splines, by as few points as are near enough to them.
+//!
+//! The cheapest chain of spans within the tolerance is found by dynamic programme. Its spans end at corners of a polygon close to
+//! the samples.
 
-use super::contour::Place;
-use crate::math::Normal;
+use crate::math::{self, Normal};
 
-/// A sample of an outline that a span has to be near to.
+/// A place, px.
+type Place = [f32; 2];
+
+/// Tolerance of the polygon whose corners are the candidates for on-points, in units of that of the outline. A guess.
+const POLYGON: f32 = 0.22 / 0.3;
+
+/// The cheapest chain that ends at a candidate: its points, the candidate that its last span starts at, and that span.
+#[derive(Clone, Copy)]
+struct Best {
+    cost: usize,
+    from: usize,
+    span: Span,
+}
+
+/// Appends the points of a run, its last one left out, each with whether it is on the path. Spans may end at the samples `ends`,
+/// too.
+pub(super) fn chain(
+    run: &[Sample],
+    ends: impl Iterator<Item = usize>,
+    tolerance: f32,
+    points: &mut Vec<(Place, bool)>,
+) {
+    let candidates = candidates(run, ends, tolerance);
+    let unreached = Best {
+        cost: usize::MAX,
+        from: 0,
+        span: Span::default(),
+    };
+    let mut best = vec![unreached; candidates.len()];
+    best[0].cost = 0;
+    for a in 0..candidates.len() - 1 {
+        if best[a].cost < usize::MAX {
+            extend(run, &candidates, a, &mut best);
+        }
+    }
+    // Backwards from the end.
+    let mut spans = Vec::new();
+    let mut at = candidates.len() - 1;
+    while at > 0 {
+        spans.push((best[at].from, best[at].span));
+        at = best[at].from;
+    }
+    for (from, span) in spans.into_iter().rev() {
+        points.push((run[candidates[from]].at, true));
+        points.extend(span.off[..span.count].iter().map(|&at| (at, false)));
+    }
+}
+
+/// Tries all spans that start at candidate `a`.
+fn extend(run: &[Sample], candidates: &[usize], a: usize, best: &mut [Best]) {
+    // A longer span needs as many off-points as a shorter one, or more.
+    let mut least = 0;
+    let mut failed = 0;
+    for b in a + 1..candidates.len() {
+        let samples = thinned(&run[candidates[a]..=candidates[b]]);
+        let most = MOST.min(samples.len().saturating_sub(2));
+        let found = (least..=most)
+            .take_while(|count| best[a].cost + 1 + count < best[b].cost)
+            .find_map(|count| {
+                let (span, worst) = fit(&samples, count);
+                (worst <= 1.0).then_some(span)
+            });
+        let is_cheaper = best[a].cost + 1 + least < best[b].cost;
+        match found {
+            Some(span) => {
+                least = span.count.saturating_sub(1);
+                best[b] = Best {
+                    cost: best[a].cost + 1 + span.count,
+                    from: a,
+                    span,
+                };
+                failed = 0;
+            }
+            // The next candidate can always be reached.
+            None if b == a + 1 && best[b].cost == usize::MAX => {
+                best[b] = Best {
+                    cost: best[a].cost + 1,
+                    from: a,
+                    span: Span::default(),
+                };
+            }
+            None if is_cheaper => failed += 1,
+            None => {}
+        }
+        if failed == 3 {
+            return;
+        }
+    }
+}
+
+/// At most some forty of the samples, with both ends.
+fn thinned(run: &[Sample]) -> Vec<Sample> {
+    let stride = run.len().div_ceil(40);
+    let last = run.len() - 1;
+    let inner = (0..last).step_by(stride).map(|i| run[i]);
+    inner.chain([run[last]]).collect()
+}
+
+/// The samples at which spans may end: `ends`, corners of a polygon near to the run, and one in the middle of long gaps.
+fn candidates(run: &[Sample], ends: impl Iterator<Item = usize>, tolerance: f32) -> Vec<usize> {
+    let mut found = vec![];
+    for factor in [1.0, 2.0, 4.0] {
+        found = polygon(run, factor * POLYGON * tolerance);
+        if found.len() <= 40 {
+            break;
+        }
+    }
+    let gaps = found.windows(2).filter(|w| w[1] - w[0] > 14);
+    let middles: Vec<usize> = gaps.map(|w| (w[0] + w[1]) / 2).collect();
+    found.extend(middles.into_iter().chain(ends));
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The indices of the corners of a polygon that is within `tolerance` of the run, after Ramer, Douglas and Peucker.
+fn polygon(run: &[Sample], tolerance: f32) -> Vec<usize> {
+    let last = run.len() - 1;
+    let mut kept = vec![0, last];
+    let mut stack = vec![(0, last)];
+    while let Some((a, b)) = stack.pop() {
+        let ends = [run[a].at, run[b].at];
+        let away2 = |i: usize| math::nearest_on_segment(run[i].at, ends).1;
+        let far = (a + 1..b)
+            .map(|i| (away2(i), i))
+            .max_by(|p, q| p.0.total_cmp(&q.0));
+        if let Some((_, i)) = far.filter(|far| far.0 > tolerance * tolerance) {
+            kept.push(i);
+            stack.extend([(a, i), (i, b)]);
+        }
+    }
+    kept.sort_unstable();
+    kept
+}
+
+/// A sample that a span has to be near to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     pub(super) at: Place,
-    /// The direction out of the shape.
+    /// The direction to one side, out of a shape. A line has none, and the second tolerance.
     pub(super) outward: Place,
-    /// Farthest that the outline may be inside and outside of it, px.
+    /// Farthest that the span may be from it to the other side, inside, and to that side, px.
     pub(super) tolerance: [f32; 2],
     /// Its weight among others.
     pub(super) weight: f32,
 }
 
 /// Most off-points of a span.
-pub(super) const MOST: usize = 8;
+const MOST: usize = 8;
 
 /// The off-points of a span.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Span {
-    pub(super) count: usize,
-    pub(super) off: [Place; MOST],
+struct Span {
+    count: usize,
+    off: [Place; MOST],
 }
 
 /// The span with `count` off-points that is nearest to the samples, and how far it is from them in units of their
 /// tolerances. It goes from the first to the last sample.
-pub(super) fn fit(samples: &[Sample], count: usize) -> (Span, f32) {
+fn fit(samples: &[Sample], count: usize) -> (Span, f32) {
     let mut span = Span {
         count,
         ..Span::default()
@@ -59,7 +196,7 @@ pub(super) fn fit(samples: &[Sample], count: usize) -> (Span, f32) {
 /// Times that the places along a span are found again. A guess.
 const ROUNDS: usize = 4;
 
-/// Distance of a place of an outline from a sample, in units of its tolerance.
+/// Distance of a place of a span from a sample, in units of its tolerance.
 fn violation(sample: &Sample, at: Place) -> f32 {
     let [x, y] = [at[0] - sample.at[0], at[1] - sample.at[1]];
     let is_outside = x * sample.outward[0] + y * sample.outward[1] >= 0.0;
@@ -68,7 +205,7 @@ fn violation(sample: &Sample, at: Place) -> f32 {
 }
 
 fn on_line(p: Place, ends: [Place; 2]) -> Place {
-    crate::math::nearest_on_segment(p, ends).0
+    math::nearest_on_segment(p, ends).0
 }
 
 /// The lengths from the first sample to each, scaled to end at `end`.
@@ -76,7 +213,7 @@ fn lengths(samples: &[Sample], end: f32) -> Vec<f32> {
     let mut sum = 0.0;
     let mut lengths = vec![0.0];
     for pair in samples.windows(2) {
-        sum += crate::math::distance(pair[0].at, pair[1].at);
+        sum += math::distance(pair[0].at, pair[1].at);
         lengths.push(sum);
     }
     let scale = end / sum.max(f32::MIN_POSITIVE);
