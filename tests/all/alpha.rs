@@ -1,13 +1,9 @@
 //! Transparency is fitted: no background is drawn, and a drawing looks right on whatever it is laid.
 
 use crate::support::{draft, drawn, rendered, sample};
-use strokefit::fit::{Background, Config, Fit};
+use strokefit::fit::{Background, Config};
 use strokefit::image::Image;
 use strokefit::verify::{self};
-
-fn text(fit: &Fit) -> String {
-    fit.svg()
-}
 
 /// A red square of half opacity in a clear page.
 fn glass() -> Image {
@@ -28,33 +24,27 @@ fn pictures_look_right_on_every_matte() {
     ] {
         let picture = sample(name);
         let fit = drawn(&picture, &draft(strokes));
-        let seen = verify::on_mattes(&text(&fit), &picture).unwrap();
+        let seen = verify::on_mattes(&fit.svg(), &picture).unwrap();
         for db in [seen.black_db, seen.white_db, seen.magenta_db] {
             assert!(db > min_db, "{name}: {seen:?}");
         }
-        let verdict = verify::verify(&text(&fit), &fit.target, &fit.soft).unwrap();
+        let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
         assert!(verdict.agreement.psnr_db > 36.0, "{name}: {verdict:?}");
         assert_eq!(verdict.fidelity.psnr_db, seen.white_db, "{name}");
+        // No background is drawn; its element begins with the width, that of a shape with the place.
+        assert!(!fit.svg().contains("<rect width"));
+        let drawn = rendered(&fit.svg());
+        let pairs = drawn.alpha().unwrap().iter().zip(picture.alpha().unwrap());
+        let errors: Vec<f32> = pairs.map(|(a, b)| (a - b).abs()).collect();
+        let mean = errors.iter().sum::<f32>() / errors.len() as f32;
+        assert!(mean < 0.005, "{name}: alpha is off by {mean} in the mean");
     }
-}
-
-#[test]
-fn a_clear_picture_has_no_ground_and_the_same_alpha() {
-    let picture = sample("noto-gem");
-    let text = text(&drawn(&picture, &draft(150)));
-    // That of a ground begins with its width, that of a shape with its place.
-    assert!(!text.contains("<rect width"));
-    let seen = rendered(&text);
-    let pairs = seen.alpha().unwrap().iter().zip(picture.alpha().unwrap());
-    let error: f32 = pairs.map(|(a, b)| (a - b).abs()).sum();
-    let mean = error / picture.alpha().unwrap().len() as f32;
-    assert!(mean < 0.005, "alpha is off by {mean} in the mean");
 }
 
 #[test]
 fn glass_is_drawn_as_glass() {
     let fit = drawn(&glass(), &draft(40));
-    let seen = rendered(&text(&fit));
+    let seen = rendered(&fit.svg());
     let at = |x: usize, y: usize| y * 48 + x;
     let alpha = seen.alpha().unwrap();
     assert!(
@@ -98,9 +88,9 @@ fn translucent_shapes_are_elements() {
         assert!(
             fit.scene.len() == expected.len() && opacities.iter().zip(&expected).all(is_near),
             "{name}: {opacities:?} in {}",
-            text(&fit)
+            fit.svg()
         );
-        let seen = verify::on_mattes(&text(&fit), &picture).unwrap();
+        let seen = verify::on_mattes(&fit.svg(), &picture).unwrap();
         let db = seen.black_db.min(seen.white_db);
         assert!(db > least_db, "{name}: {db}");
     }
@@ -126,7 +116,10 @@ fn on_a_colour_a_drawing_is_opaque() {
         ..draft(40)
     };
     let fit = drawn(&glass(), &config);
-    assert!(text(&fit).contains("<rect width=\"48\" height=\"40\" fill=\"#336699\"/>"));
+    assert!(
+        fit.svg()
+            .contains("<rect width=\"48\" height=\"40\" fill=\"#336699\"/>")
+    );
     assert_eq!((fit.target.alpha(), fit.soft.alpha()), (None, None));
     assert_eq!(fit.target, glass().flattened([0.2, 0.4, 0.6]));
 }

@@ -1,9 +1,7 @@
 //! Budgets hold, and no drawing has a hole: what cases of users showed.
 
-use std::ops::ControlFlow;
-
 use crate::support::{
-    self, Place, assert_says, committed, of_bytes, of_psnr, of_strokes, sample, within,
+    self, Place, assert_says, committed, goes_on, of_bytes, of_psnr, of_strokes, sample, within,
 };
 use strokefit::fit::{Base, Budget, Config, ErrorWeighting, Fit, Fitter, Preset, Progress, Stop};
 use strokefit::image::Image;
@@ -112,11 +110,7 @@ fn a_fit_that_is_stopped_keeps_its_bytes() {
         let mut calls = 0;
         let mut observer = |_: &Progress<'_>| {
             calls += 1;
-            if calls < last {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
+            goes_on(calls < last)
         };
         let fitter = Fitter::new(within(of_bytes(1200))).observer(&mut observer);
         let fit = fitter.fit(&picture).unwrap();

@@ -68,7 +68,28 @@ fn live(mut command: Command, life: Duration) -> Option<ExitStatus> {
     ended
 }
 
-/// The fit is killed after spans that are drawn at random and grow only where it gets nowhere.
+/// Runs the command, which draws `killed.svg`, until it is not killed before its end; returns its status and the number of
+/// kills. The spans are drawn at random, and grow so that it gets somewhere on a slow machine, too.
+fn end_of_killed(place: &Place, args: &str, seed: u64) -> (ExitStatus, u64) {
+    let whole = read(place, "whole.svg").unwrap();
+    let mut kills = 0;
+    loop {
+        let span_s = 0.02 + 0.25 * rng::draw(seed, kills, 0, 0);
+        let life = Duration::from_secs_f32(span_s * 1.05_f32.powi(kills as i32));
+        let ended = live(quiet(place, &format!("{args} -o killed.svg {OFTEN}")), life);
+        let killed = read(place, "killed.svg");
+        if let Some(status) = ended {
+            assert!(killed == Some(whole), "{args} after {kills} kills");
+            let left = read(place, "fit.state");
+            assert!(left.is_none(), "the checkpoint is left");
+            return (status, kills);
+        }
+        // Nothing is written before it is whole.
+        assert!(killed.is_none_or(|svg| svg == whole));
+        kills += 1;
+    }
+}
+
 #[test]
 fn fifty_kills_change_no_byte() {
     let (mut kills, mut round) = (0, 0);
@@ -76,25 +97,10 @@ fn fifty_kills_change_no_byte() {
         let (picture, options) = FITS[round % FITS.len()];
         round += 1;
         let place = with_picture(picture, 56);
-        let whole = fit(&place, "whole.svg", options).output().unwrap();
-        let status = whole.status.code();
-        let expected = read(&place, "whole.svg").unwrap();
-        for life in 0.. {
-            let drawn = rng::draw(round as u64, life, 0, 0);
-            let life = Duration::from_secs_f32(0.02 + 0.25 * drawn + 0.002 * life as f32);
-            let killed = fit(&place, "killed.svg", &format!("{options} {OFTEN}"));
-            if let Some(ended) = live(killed, life) {
-                assert_eq!(ended.code(), status);
-                break;
-            }
-            // Nothing is written before it is whole.
-            assert!(read(&place, "killed.svg").is_none_or(|svg| svg == expected));
-            kills += 1;
-        }
-        let drawn = read(&place, "killed.svg");
-        assert!(drawn == Some(expected), "{options} after {kills} kills");
-        let left = read(&place, "fit.state");
-        assert!(left.is_none(), "the checkpoint is left");
+        let whole = fit(&place, "whole.svg", options).status().unwrap();
+        let (status, more) = end_of_killed(&place, &format!("fit in.png {options}"), round as u64);
+        assert_eq!(status.code(), whole.code());
+        kills += more;
     }
 }
 
@@ -178,20 +184,10 @@ fn a_killed_refinement_goes_on() {
     let place = with_picture(PHOTOGRAPH, 96);
     let base = fit(&place, "base.svg", "--strokes 100 --preset draft").status();
     assert!(base.unwrap().success());
-    let refine = |output: &str, options: &str| {
-        let args = format!("refine base.svg in.png -o {output} --strokes 220 {options}");
-        quiet(&place, &args)
-    };
-    assert!(refine("whole.svg", "").status().unwrap().success());
-    let mut kills = 0;
-    let ended = loop {
-        let life = Duration::from_millis(100 + 20 * kills);
-        if let Some(status) = live(refine("killed.svg", OFTEN), life) {
-            break status;
-        }
-        kills += 1;
-    };
-    assert!(ended.success());
+    let refine = "refine base.svg in.png --strokes 220";
+    let whole = quiet(&place, &format!("{refine} -o whole.svg")).status();
+    assert!(whole.unwrap().success());
+    let (status, kills) = end_of_killed(&place, refine, 0);
+    assert!(status.success());
     assert!(kills > 0, "it ended before it was killed");
-    assert!(read(&place, "killed.svg") == read(&place, "whole.svg"));
 }

@@ -8,13 +8,6 @@ use crate::support::{Place, assert_refused, assert_says, stderr};
 
 const RED_SVG: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><rect width="2" height="2" fill="#ff0000"/></svg>"##;
 
-/// A folder with a picture `in.png`.
-fn with_picture(width: u32, height: u32) -> Place {
-    let place = Place::new();
-    place.picture("in.png", width, height);
-    place
-}
-
 /// A folder with a file `red.svg`, half of which is red.
 fn with_red() -> Place {
     let place = Place::new();
@@ -24,7 +17,7 @@ fn with_red() -> Place {
 
 #[test]
 fn pictures_that_cannot_be_read_are_refused() {
-    let place = with_picture(30, 20);
+    let place = Place::of_picture(30, 20);
     let good = place.bytes("in.png");
     place.file("empty.png", "");
     place.file("cut.png", &good[..good.len() / 2]);
@@ -53,7 +46,7 @@ fn pictures_that_cannot_be_read_are_refused() {
 
 #[test]
 fn outputs_that_cannot_be_written_are_refused_before_the_work() {
-    let place = with_picture(30, 20);
+    let place = Place::of_picture(30, 20);
     place.file("file", "");
     fs::create_dir(place.path("folder")).unwrap();
     for name in ["folder", "file/out.svg", "file/none/out.svg"] {
@@ -66,7 +59,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
 
 #[test]
 fn folders_of_outputs_are_made() {
-    let place = with_picture(30, 20);
+    let place = Place::of_picture(30, 20);
     let outputs = "-o a/{stem}.svg -o b/c/in.gif -o d/{n}.png --report e/r.json --events f/e.jsonl";
     place.done(&format!("fit in.png {outputs} --strokes 5"));
     for name in ["a/in.svg", "b/c/in.gif", "d/1.png", "e/r.json", "f/e.jsonl"] {
@@ -83,7 +76,7 @@ fn folders_of_outputs_are_made() {
 #[cfg(unix)]
 fn a_write_protected_file_is_not_replaced() {
     use std::os::unix::fs::PermissionsExt;
-    let place = with_picture(30, 20);
+    let place = Place::of_picture(30, 20);
     place.file("out.svg", "precious");
     fs::set_permissions(place.path("out.svg"), fs::Permissions::from_mode(0o444)).unwrap();
     let words = ["out.svg", "permission denied"];
@@ -93,7 +86,7 @@ fn a_write_protected_file_is_not_replaced() {
 
 #[test]
 fn nonsense_options_are_refused() {
-    let place = with_picture(30, 20);
+    let place = Place::of_picture(30, 20);
     for (option, values) in [
         ("--strokes", &["0", "many", "1000000000"][..]),
         ("--psnr", &["NaN", "inf", "-3"]),
@@ -234,7 +227,7 @@ fn fit_writes_a_file_that_check_and_render_understand() {
 
 #[test]
 fn fit_works_in_a_pipe_and_quietly() {
-    let place = with_picture(30, 20);
+    let place = Place::of_picture(30, 20);
     let piped = place.pipe("fit - -o - -q --strokes 20", &place.bytes("in.png"));
     assert_eq!(piped.status.code(), Some(0));
     assert_eq!(stderr(&piped), "");
@@ -244,7 +237,7 @@ fn fit_works_in_a_pipe_and_quietly() {
 
 #[test]
 fn threads_change_no_byte() {
-    let place = with_picture(60, 40);
+    let place = Place::of_picture(60, 40);
     let fit = |threads: usize| {
         place.done(&format!(
             "fit in.png -o out.svg --preset draft --strokes 60 --threads {threads}"
@@ -407,7 +400,7 @@ fn a_large_picture_is_drawn_of_fewer_pixels() {
 
 #[test]
 fn the_look_is_as_asked_for() {
-    let place = with_picture(40, 30);
+    let place = Place::of_picture(40, 30);
     // An SVG after the picture is the output.
     let fit = |options: &str| {
         place.done(&format!(

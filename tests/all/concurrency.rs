@@ -1,10 +1,9 @@
 //! Many fits in one process: each has its own threads, memory and observer, and none sees another.
 
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use crate::support::draft;
+use crate::support::{draft, goes_on};
 use strokefit::fit::{Execution, Fit, Fitter, Progress, Stop};
 use strokefit::image::Image;
 use strokefit::rng;
@@ -15,12 +14,11 @@ const FITS: usize = 16;
 /// A picture of smooth waves, another for each `index`.
 fn picture(index: usize) -> Image {
     let (width, height) = (72, 48);
-    let plane = |channel: usize| {
-        let [fx, fy] = [0, 1].map(|k| 0.3 * rng::draw(index as u64, channel as u64, k, 0));
-        let wave = |i: usize| (fx * (i % width) as f32 + fy * (i / width) as f32).sin();
-        (0..width * height).map(|i| 0.5 + 0.4 * wave(i)).collect()
+    let level = |x: usize, y: usize, c: usize| {
+        let [fx, fy] = [0, 1].map(|k| 0.3 * rng::draw(index as u64, c as u64, k, 0));
+        0.5 + 0.4 * (fx * x as f32 + fy * y as f32).sin()
     };
-    Image::new(width, height, [plane(0), plane(1), plane(2)]).unwrap()
+    Image::from_fn(width, height, 3, level).unwrap()
 }
 
 fn fitter<'a>() -> Fitter<'a> {
@@ -30,18 +28,14 @@ fn fitter<'a>() -> Fitter<'a> {
     })
 }
 
-fn text(fit: &Fit) -> String {
-    fit.svg()
-}
-
 #[test]
 fn fits_side_by_side_are_those_one_after_the_other() {
     let alone: Vec<String> = (0..FITS)
-        .map(|i| text(&fitter().fit(&picture(i)).unwrap()))
+        .map(|i| fitter().fit(&picture(i)).unwrap().svg())
         .collect();
     let together = thread::scope(|scope| {
         let fits: Vec<_> = (0..FITS)
-            .map(|i| scope.spawn(move || text(&fitter().fit(&picture(i)).unwrap())))
+            .map(|i| scope.spawn(move || fitter().fit(&picture(i)).unwrap().svg()))
             .collect();
         fits.into_iter()
             .map(|fit| fit.join().unwrap())
@@ -57,10 +51,7 @@ fn each_can_be_stopped_alone() {
         let calls = AtomicUsize::new(0);
         let mut observer = |_: &Progress<'_>| {
             let call = calls.fetch_add(1, Ordering::Relaxed);
-            match index % 2 == 1 && call >= 3 * index {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
+            goes_on(index.is_multiple_of(2) || call < 3 * index)
         };
         let fit = fitter().observer(&mut observer).fit(&picture(index));
         (fit.unwrap(), calls.into_inner())
@@ -75,6 +66,6 @@ fn each_can_be_stopped_alone() {
         } else {
             assert_ne!(fit.stop, Stop::Interrupted);
         }
-        svg::read(&text(fit)).unwrap();
+        svg::read(&fit.svg()).unwrap();
     }
 }

@@ -9,8 +9,7 @@ fn draw(place: &Place, options: &str) -> String {
 
 #[test]
 fn a_printed_file_draws_the_same_bytes_as_the_flags() {
-    let place = Place::new();
-    place.picture("in.png", 40, 30);
+    let place = Place::of_picture(40, 30);
     for flags in [
         "--strokes 20 --opaque --precision 1 --seed 18446744073709551615",
         "--psnr 22.5 --preset draft --no-polish --background #102030",
@@ -25,8 +24,7 @@ fn a_printed_file_draws_the_same_bytes_as_the_flags() {
 
 #[test]
 fn flags_override_the_file_wherever_they_stand() {
-    let place = Place::new();
-    place.picture("in.png", 40, 30);
+    let place = Place::of_picture(40, 30);
     place.file(
         "fit.toml",
         "strokes = 5\nopaque = true\nno-polish = true\nseed = 3\n",
@@ -49,8 +47,7 @@ fn flags_override_the_file_wherever_they_stand() {
 
 #[test]
 fn a_file_may_name_the_outputs_and_come_by_pipe() {
-    let place = Place::new();
-    place.picture("in.png", 40, 30);
+    let place = Place::of_picture(40, 30);
     let text =
         b"output = '{stem}-drawn.svg'\nreport = '{stem}.json'\nstrokes = 8\npreset = 'draft'";
     let output = place.pipe("fit in.png --config -", text);
@@ -61,8 +58,7 @@ fn a_file_may_name_the_outputs_and_come_by_pipe() {
 #[test]
 fn files_that_say_nonsense_are_refused_with_the_line() {
     let with_file = "fit in.png -o out.svg --config fit.toml";
-    let place = Place::new();
-    place.picture("in.png", 40, 30);
+    let place = Place::of_picture(40, 30);
     for (text, words) in [
         (
             "# a comment\n\nstroks = 5",
@@ -96,8 +92,7 @@ fn files_that_say_nonsense_are_refused_with_the_line() {
 
 #[test]
 fn a_conflict_between_file_and_flag_is_a_refusal() {
-    let place = Place::new();
-    place.picture("in.png", 40, 30);
+    let place = Place::of_picture(40, 30);
     place.file(
         "fit.toml",
         "progressive = true\nstrokes = 5\npreset = 'draft'",
@@ -109,8 +104,7 @@ fn a_conflict_between_file_and_flag_is_a_refusal() {
 
 #[test]
 fn refining_takes_options_from_files_too() {
-    let place = Place::new();
-    place.picture("in.png", 40, 30);
+    let place = Place::of_picture(40, 30);
     draw(&place, "--strokes 5 --preset draft");
     place.file(
         "more.toml",

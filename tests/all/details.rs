@@ -37,36 +37,40 @@ fn correlation([a, b]: [&[f64]; 2], width: usize, from: [usize; 2], to: [usize; 
     product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt()
 }
 
-/// Correlations in boxes of a picture that is drawn by default; the file has at most so many bytes.
-#[track_caller]
-fn assert_legible(name: &str, boxes: &[[usize; 4]], least: f64, most_bytes: usize) {
-    let picture = picture(name);
-    let fit = drawn(&picture, &Config::default());
-    let (target, file) = (grey(&picture), seen(&fit, &picture));
-    for &[x0, y0, x1, y1] in boxes {
-        let c = correlation([&target, &file], picture.width(), [x0, y0], [x1, y1]);
-        assert!(c >= least, "{name}: {c} in {x0},{y0} to {x1},{y1}");
+#[test]
+fn labels_dashes_and_measures_can_be_read() {
+    // Boxes of a picture, the least correlation in each, and the most bytes of the file.
+    let cases: [(&str, &[[usize; 4]], f64, usize); 3] = [
+        (
+            "map.png",
+            &[[110, 62, 172, 76], [279, 70, 306, 84], [119, 270, 152, 284]],
+            0.96,
+            7_900,
+        ),
+        (
+            "blueprint.png",
+            &[[218, 327, 272, 342], [15, 342, 475, 348]],
+            0.96,
+            7_700,
+        ),
+        (
+            "flowchart.png",
+            &[[48, 43, 88, 60], [188, 183, 230, 200]],
+            0.98,
+            7_700,
+        ),
+    ];
+    for (name, boxes, least, most_bytes) in cases {
+        let picture = picture(name);
+        let fit = drawn(&picture, &Config::default());
+        let (target, file) = (grey(&picture), seen(&fit, &picture));
+        for &[x0, y0, x1, y1] in boxes {
+            let c = correlation([&target, &file], picture.width(), [x0, y0], [x1, y1]);
+            assert!(c >= least, "{name}: {c} in {x0},{y0} to {x1},{y1}");
+        }
+        let bytes = fit.svg().len();
+        assert!(bytes <= most_bytes, "{name}: {bytes} bytes");
     }
-    let bytes = fit.svg().len();
-    assert!(bytes <= most_bytes, "{name}: {bytes} bytes");
-}
-
-#[test]
-fn labels_of_a_map_can_be_read() {
-    let labels = [[110, 62, 172, 76], [279, 70, 306, 84], [119, 270, 152, 284]];
-    assert_legible("map.png", &labels, 0.96, 7_900);
-}
-
-#[test]
-fn a_measure_and_dashes_of_a_blueprint_can_be_read() {
-    let places = [[218, 327, 272, 342], [15, 342, 475, 348]];
-    assert_legible("blueprint.png", &places, 0.96, 7_700);
-}
-
-#[test]
-fn labels_of_a_flowchart_can_be_read() {
-    let labels = [[48, 43, 88, 60], [188, 183, 230, 200]];
-    assert_legible("flowchart.png", &labels, 0.98, 7_700);
 }
 
 #[test]

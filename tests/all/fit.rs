@@ -4,7 +4,9 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use crate::support::{draft, drawn, of_bytes, of_psnr, of_strokes, on_white, sample, within};
+use crate::support::{
+    draft, drawn, goes_on, of_bytes, of_psnr, of_strokes, on_white, sample, within,
+};
 use strokefit::coverage::CoverageSchedule;
 use strokefit::fit::{
     Budget, CancelToken, Config, Fit, Fitter, Preset, Progress, Rates, Recipe, Stop,
@@ -266,11 +268,7 @@ fn a_fit_that_may_finish_after_it_was_stopped_is_better_for_it() {
         let mut last = 0;
         let mut watch = |progress: &Progress<'_>| {
             last += usize::from(progress.strokes > 500);
-            if last > 2 {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            goes_on(last <= 2)
         };
         let fitter = Fitter::new(within(of_strokes(1000))).observer(&mut watch);
         let fit = fitter.grace(grace).fit(&picture).unwrap();

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::mpsc;
 
-use crate::support::{draft, drawn, sample};
+use crate::support::{draft, drawn, goes_on, sample};
 use strokefit::ErrorKind;
 use strokefit::fit::{CancelToken, Checkpoint, Config, Fitter, Preset, Progress, Recipe, Stop};
 use strokefit::image::Image;
@@ -99,16 +99,20 @@ fn a_checkpoint_of_other_options_is_refused() {
     assert_eq!(fit(&config).unwrap().scene, first.scene);
 }
 
+/// What looks random.
+fn noise(width: usize, height: usize) -> Image {
+    let level = |x, y, c| {
+        let i = y * width + x;
+        (i * i * [3, 5, 7][c] % 97) as f32 / 96.0
+    };
+    Image::from_fn(width, height, 3, level).unwrap()
+}
+
 /// Every phase is interrupted somewhere, between two rounds of settling too.
 #[test]
 fn a_fit_that_is_stopped_at_any_call_goes_on_to_the_same_drawing() {
     let folder = tempfile::tempdir().unwrap();
-    let plane = |k: usize| {
-        (0..32 * 24)
-            .map(|i| (i * i * k % 97) as f32 / 96.0)
-            .collect()
-    };
-    let picture = Image::new(32, 24, [plane(3), plane(5), plane(7)]).unwrap();
+    let picture = noise(32, 24);
     let config = Config {
         stages: Some(2),
         ..with_recipe(|recipe| {
@@ -125,11 +129,7 @@ fn a_fit_that_is_stopped_at_any_call_goes_on_to_the_same_drawing() {
             let mut calls = 0;
             let mut watch = |_: &Progress<'_>| {
                 calls += 1;
-                if calls == last {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
+                goes_on(calls != last)
             };
             let mut checkpoint = Checkpoint::new(&path);
             let fitter = Fitter::new(config.clone()).observer(&mut watch);
@@ -148,12 +148,7 @@ fn a_fit_that_is_stopped_at_any_call_goes_on_to_the_same_drawing() {
 /// Noise takes three times the strokes that a plan without a budget guesses.
 #[test]
 fn progress_is_not_done_while_much_is_to_come() {
-    let noise = |k: usize| {
-        (0..96 * 96)
-            .map(|i| (i * i * k % 97) as f32 / 96.0)
-            .collect()
-    };
-    let picture = Image::new(96, 96, [noise(3), noise(5), noise(7)]).unwrap();
+    let picture = noise(96, 96);
     let config = Config {
         quality: Some(55.0),
         recipe: Some(Recipe::of(Preset::Draft)),

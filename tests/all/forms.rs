@@ -55,13 +55,6 @@ impl Drawn {
 }
 
 #[test]
-fn one_element_is_one_stroke() {
-    let drawn = drawn("coffee-300", "");
-    let elements = drawn.text.matches("<path").count();
-    assert_eq!(elements as f64, drawn.number("strokes"));
-}
-
-#[test]
 fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
     let plain = drawn("coffee-300", "--opaque --precision 1");
     let smallest = drawn("coffee-300", "--opaque --precision 1 --form smallest");
@@ -143,8 +136,10 @@ fn outlines_are_verified_but_not_read_back() {
 }
 
 #[test]
-fn a_page_has_the_width_that_was_asked_for() {
+fn one_element_is_one_stroke_on_a_page_of_the_width_asked_for() {
     let drawn = drawn("coffee-300", "--width 120mm");
+    let elements = drawn.text.matches("<path").count();
+    assert_eq!(elements as f64, drawn.number("strokes"));
     let head = r#"width="120mm" height="80mm" viewBox="0 0 300 200""#;
     assert!(drawn.text.contains(head));
     drawn.place.done("check a.svg @samples/coffee-300.png");
@@ -152,17 +147,16 @@ fn a_page_has_the_width_that_was_asked_for() {
 
 #[test]
 fn at_most_so_many_colours_are_used() {
-    for options in ["--colors 5", "--colors 5 --opaque"] {
+    for (options, count) in [
+        ("--colors 5", 5),
+        ("--colors 5 --opaque", 5),
+        ("--colors 3 --background #00ff00", 3),
+    ] {
         let colors = drawn("coffee-300", options).colors();
-        assert_eq!(colors.len(), 5, "{options}");
+        assert_eq!(colors.len(), count, "{options}");
+        // A background that was asked for is one of them.
+        assert_eq!(colors.contains("#00ff00"), count == 3);
     }
-}
-
-#[test]
-fn a_background_that_was_asked_for_is_one_of_the_colours() {
-    let colors = drawn("coffee-300", "--colors 3 --background #00ff00").colors();
-    assert_eq!(colors.len(), 3);
-    assert!(colors.contains("#00ff00"));
 }
 
 #[test]

@@ -135,8 +135,7 @@ fn manual_pages_are_written_for_every_command() {
 #[test]
 #[cfg(unix)]
 fn a_reader_that_goes_away_is_no_failure() {
-    let place = Place::new();
-    place.picture("in.png", 30, 20);
+    let place = Place::of_picture(30, 20);
     for args in [
         "fit --help",
         "completions bash",

@@ -55,7 +55,6 @@ mod fitter;
 mod fuzz;
 mod gradients;
 mod imports;
-mod library;
 mod points;
 mod render;
 mod repeatability;

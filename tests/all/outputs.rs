@@ -9,8 +9,7 @@ const SVG: &str =
     r##"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="30" viewBox="0 0 40 30"/>"##;
 
 fn with_inputs() -> Place {
-    let place = Place::new();
-    place.picture("in.png", 40, 30);
+    let place = Place::of_picture(40, 30);
     place.file("in.svg", SVG);
     place
 }

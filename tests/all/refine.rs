@@ -242,8 +242,7 @@ fn a_frozen_drawing_stays_as_it_is_and_stays_a_drawing() {
 /// Another prefix, other units, a viewBox, and properties that strokes would inherit.
 #[test]
 fn the_root_does_not_change_the_strokes() {
-    let place = Place::new();
-    place.picture("in.png", 60, 40);
+    let place = Place::of_picture(60, 40);
     let root = "<s:svg xmlns:s=\"http://www.w3.org/2000/svg\" width=\"30mm\" height=\"20mm\" \
                 viewBox=\"-5 7 30 20\" stroke-opacity=\"0.2\" stroke-dasharray=\"1 2\" fill=\"red\" \
                 shape-rendering=\"crispEdges\" stroke-linecap=\"butt\">";
@@ -268,8 +267,7 @@ fn the_root_does_not_change_the_strokes() {
 
 #[test]
 fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
-    let place = Place::new();
-    place.picture("in.png", 30, 20);
+    let place = Place::of_picture(30, 20);
     let base = format!(
         "<svg {NAMESPACE} viewBox=\"0 0 30 20\"><text>a</text><image href=\"/etc/hostname\"/><g/></svg>"
     );
@@ -280,8 +278,7 @@ fn what_is_passed_through_and_what_cannot_be_seen_is_said() {
 
 #[test]
 fn the_page_keeps_its_width() {
-    let place = Place::new();
-    place.picture("in.png", 60, 40);
+    let place = Place::of_picture(60, 40);
     draft(&place, "fit in.png --strokes 5 --width 120mm -o own.svg");
     draft(&place, "refine own.svg in.png --strokes 9 -o more.svg");
     assert!(
@@ -304,8 +301,7 @@ fn transparency_is_kept() {
 
 #[test]
 fn what_cannot_be_refined_is_refused() {
-    let place = Place::new();
-    place.picture("in.png", 30, 20);
+    let place = Place::of_picture(30, 20);
     let svg = |root: &str, inside: &str| format!("<svg {NAMESPACE} {root}>{inside}</svg>");
     let of_page = |inside: &str| svg(r#"width="30" height="20""#, inside);
     let on_root = |attribute: &str| svg(&format!(r#"width="30" height="20" {attribute}"#), "<g/>");

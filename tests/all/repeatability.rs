@@ -7,9 +7,8 @@
 //! floors by hand.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
-use crate::support::{of_bytes, of_strokes};
+use crate::support::{committed, of_bytes, of_strokes, picture, within};
 use strokefit::fit::{
     Background, Base, Budget, Colors, Config, ErrorWeighting, Execution, Fit, Fitter, Preset,
     Recipe, Simd,
@@ -21,17 +20,12 @@ use strokefit::verify;
 /// Least excess of the median of all drawings over the floors, dB: 0.27 to 0.40 were seen in five fits of all.
 const MEDIAN_ABOVE_DB: f64 = 0.25;
 
-fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
-}
-
 /// The committed samples, by name.
 fn samples() -> Vec<String> {
-    let names = fs::read_dir(folder("samples")).unwrap().map(|entry| {
-        let name = entry.unwrap().file_name().into_string().unwrap();
-        name.strip_suffix(".png").map(str::to_owned)
-    });
-    let mut names: Vec<String> = names.flatten().collect();
+    let files = fs::read_dir(committed("samples")).unwrap();
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    let pictures = names.filter_map(|name| name.strip_suffix(".png").map(str::to_owned));
+    let mut names: Vec<String> = pictures.collect();
     names.sort();
     names
 }
@@ -64,12 +58,13 @@ impl Case {
     }
 
     fn picture(&self) -> Image {
-        let extension = if self.sample == "starry-night" {
-            "jpg"
-        } else {
-            "png"
-        };
-        Image::open(folder("samples").join(format!("{}.{extension}", self.sample))).unwrap()
+        let is_photograph = self.sample == "starry-night";
+        let extension = if is_photograph { "jpg" } else { "png" };
+        picture(&format!("{}.{extension}", self.sample))
+    }
+
+    fn full_name(&self) -> String {
+        format!("{}: {}", self.sample, self.name)
     }
 
     fn fit(&self, execution: Execution) -> Fit {
@@ -90,11 +85,9 @@ impl Case {
 /// Every sample under each set of options, then single samples under options of their own. Between them the
 /// fits pass through every part of the algorithm; they are drafts, so that all take seconds.
 fn cases() -> Vec<Case> {
-    let every = samples().into_iter().flat_map(|sample| {
-        option_sets()
-            .into_iter()
-            .map(move |(name, config)| Case::new(&sample, name, config))
-    });
+    let every = samples()
+        .into_iter()
+        .flat_map(|sample| option_sets().map(|(name, config)| Case::new(&sample, name, config)));
     let mut cases: Vec<Case> = every.collect();
     cases.extend(few_colors());
     cases.extend(other_forms());
@@ -113,15 +106,23 @@ fn draft(budget: Budget) -> Config {
     }
 }
 
-fn at_most(strokes: usize) -> Budget {
-    of_strokes(strokes)
-}
-
-/// A draft is not settled against its file unless asked.
-fn settled() -> Option<Recipe> {
+/// A draft that is settled against its file, as drafts are not unless asked.
+fn settled(budget: Budget) -> Config {
     let mut recipe = Recipe::of(Preset::Draft);
     recipe.settling_rounds = 2;
-    Some(recipe)
+    Config {
+        recipe: Some(recipe),
+        ..draft(budget)
+    }
+}
+
+/// A file of this form, with so many decimals.
+fn written(form: Form, precision: u8) -> WriteOptions {
+    WriteOptions {
+        form,
+        precision,
+        ..WriteOptions::default()
+    }
 }
 
 fn option_sets() -> [(&'static str, Config); 4] {
@@ -131,14 +132,8 @@ fn option_sets() -> [(&'static str, Config); 4] {
         ..Budget::default()
     };
     [
-        ("150 strokes", draft(at_most(150))),
-        (
-            "22 dB in 9 kB, settled",
-            Config {
-                recipe: settled(),
-                ..draft(faithful)
-            },
-        ),
+        ("150 strokes", draft(of_strokes(150))),
+        ("22 dB in 9 kB, settled", settled(faithful)),
         (
             "opaque, progressive, seed 7",
             Config {
@@ -146,20 +141,16 @@ fn option_sets() -> [(&'static str, Config); 4] {
                 progressive: true,
                 background: Background::None,
                 coverage: "atan:4>smoothstep".parse().unwrap(),
-                file: WriteOptions {
-                    precision: 1,
-                    ..WriteOptions::default()
-                },
+                file: written(Form::Plain, 1),
                 seed: 7,
-                ..draft(at_most(150))
+                ..draft(of_strokes(150))
             },
         ),
         (
             "100 strokes for the eye, settled",
             Config {
                 look: Some(ErrorWeighting::Eye),
-                recipe: settled(),
-                ..draft(at_most(100))
+                ..settled(of_strokes(100))
             },
         ),
     ]
@@ -169,23 +160,21 @@ fn option_sets() -> [(&'static str, Config); 4] {
 fn few_colors() -> [Case; 3] {
     let translucent = Config {
         colors: Colors::AtMost(12),
-        recipe: settled(),
-        ..draft(at_most(150))
+        ..settled(of_strokes(150))
     };
     let opaque = Config {
         opaque: true,
         colors: Colors::AtMost(6),
         file: WriteOptions {
-            form: Form::Smallest,
             group: Group::Color,
-            ..WriteOptions::default()
+            ..written(Form::Smallest, WriteOptions::default().precision)
         },
         ..translucent.clone()
     };
     let palette = Config {
         colors: Colors::Palette(vec![[255; 3], [40, 40, 60], [220, 60, 50], [120, 150, 200]]),
         coverage: "tanh>smoothstep".parse().unwrap(),
-        ..draft(at_most(150))
+        ..draft(of_strokes(150))
     };
     [
         Case::new("coffee-300", "12 colours, settled", translucent),
@@ -196,17 +185,11 @@ fn few_colors() -> [Case; 3] {
 
 /// Pens, and outlines.
 fn other_forms() -> [Case; 2] {
-    let written = |form, precision| WriteOptions {
-        form,
-        precision,
-        ..WriteOptions::default()
-    };
     let pens = Config {
         opaque: true,
         background: Background::Color([0.2, 0.4, 0.6]),
         file: written(Form::Smallest, 1),
-        recipe: settled(),
-        ..draft(at_most(150))
+        ..settled(of_strokes(150))
     };
     let outlines = Config {
         coverage: "sigmoid>smoothstep".parse().unwrap(),
@@ -228,9 +211,8 @@ fn other_budgets() -> [Case; 3] {
         ..draft(Budget::default())
     };
     let balanced = Config {
-        budget: at_most(60),
         look: Some(ErrorWeighting::Exact),
-        ..Config::default()
+        ..within(of_strokes(60))
     };
     [
         Case::new(
@@ -239,27 +221,21 @@ fn other_budgets() -> [Case; 3] {
             priced,
         ),
         Case::new("rocket-320", "60 strokes, balanced", balanced),
-        Case::new("starry-night", "150 strokes", draft(at_most(150))),
+        Case::new("starry-night", "150 strokes", draft(of_strokes(150))),
     ]
 }
 
 /// A drawing of ours, taken up again, and a foreign SVG under strokes.
 fn on_bases() -> [Case; 2] {
-    let half = Case::new("coffee-300", "75 strokes", draft(at_most(75)));
-    let traced = fs::read_to_string(folder("tests/data/chelsea-traced.svg")).unwrap();
-    let on_traced = Config {
-        recipe: settled(),
-        ..draft(at_most(60))
-    };
+    let half = Case::new("coffee-300", "75 strokes", draft(of_strokes(75)));
+    let traced = fs::read_to_string(committed("tests/data/chelsea-traced.svg")).unwrap();
+    let (whole, name) = (
+        draft(of_strokes(150)),
+        "60 strokes on a traced file, settled",
+    );
     [
-        Case::new("coffee-300", "75 strokes, then 75", draft(at_most(150)))
-            .on(half.drawn(Execution::default())),
-        Case::new(
-            "chelsea-cat",
-            "60 strokes on a traced file, settled",
-            on_traced,
-        )
-        .on(traced),
+        Case::new("coffee-300", "75 strokes, then 75", whole).on(half.drawn(Execution::default())),
+        Case::new("chelsea-cat", name, settled(of_strokes(60))).on(traced),
     ]
 }
 
@@ -269,7 +245,7 @@ fn fidelities() -> Vec<(String, f64)> {
     let fidelity = |case: &Case| {
         let fit = case.fit(Execution::default());
         let fidelity = verify::fidelity(&fit.svg(), &fit.target).unwrap();
-        (format!("{}: {}", case.sample, case.name), fidelity.psnr_db)
+        (case.full_name(), fidelity.psnr_db)
     };
     cases.iter().map(fidelity).collect()
 }
@@ -338,11 +314,8 @@ const RUN_DIFFERENTLY: [&str; 6] = [
 #[test]
 fn how_it_is_run_changes_no_byte() {
     let cases = cases();
-    let run_differently = |case: &&Case| {
-        let name = format!("{}: {}", case.sample, case.name);
-        RUN_DIFFERENTLY.contains(&name.as_str())
-    };
-    let cases: Vec<&Case> = cases.iter().filter(run_differently).collect();
+    let is_one = |case: &&Case| RUN_DIFFERENTLY.contains(&case.full_name().as_str());
+    let cases: Vec<&Case> = cases.iter().filter(is_one).collect();
     assert_eq!(cases.len(), RUN_DIFFERENTLY.len());
     for case in cases {
         let drawn = |threads, simd| {
@@ -352,15 +325,13 @@ fn how_it_is_run_changes_no_byte() {
             })
         };
         let expected = drawn(1, Simd::Auto);
-        for threads in [2, 3] {
-            assert!(
-                drawn(threads, Simd::Auto) == expected,
-                "{}: {threads} threads",
-                case.name
-            );
-        }
-        for simd in Simd::available() {
-            assert!(drawn(2, simd) == expected, "{}: {simd}", case.name);
+        let instructions = Simd::available().map(|simd| (2, simd));
+        for (threads, simd) in [(2, Simd::Auto), (3, Simd::Auto)]
+            .into_iter()
+            .chain(instructions)
+        {
+            let is_same = drawn(threads, simd) == expected;
+            assert!(is_same, "{}: {threads} threads, {simd}", case.name);
         }
     }
 }

@@ -9,19 +9,16 @@ use strokefit::{svg, verify};
 /// A ramp with a red square on it.
 fn sign() -> Image {
     let (width, height) = (96, 64);
-    let inside = |i: usize| (30..50).contains(&(i % width)) && (20..40).contains(&(i / width));
-    let plane = |from: f32, to: f32, thing: f32| -> Vec<f32> {
-        let part = |i: usize| ((i % width) as f32 + 0.5) / width as f32;
-        let ramp = |i: usize| ((from + (to - from) * part(i)) * 255.0).round() / 255.0;
-        let value = |i: usize| if inside(i) { thing } else { ramp(i) };
-        (0..width * height).map(value).collect()
+    let ends = [[0.2, 0.9], [0.5, 0.6], [0.9, 0.3]];
+    let level = |x: usize, y: usize, c: usize| {
+        if (30..50).contains(&x) && (20..40).contains(&y) {
+            return [0.9, 0.1, 0.1][c];
+        }
+        let [from, to] = ends[c];
+        let part = (x as f32 + 0.5) / width as f32;
+        ((from + (to - from) * part) * 255.0).round() / 255.0
     };
-    let planes = [
-        plane(0.2, 0.9, 0.9),
-        plane(0.5, 0.6, 0.1),
-        plane(0.9, 0.3, 0.1),
-    ];
-    Image::new(width, height, planes).unwrap()
+    Image::from_fn(width, height, 3, level).unwrap()
 }
 
 /// The gradient of a page.
@@ -77,25 +74,18 @@ fn a_refined_drawing_keeps_its_shade() {
 #[test]
 fn a_background_or_colours_that_are_given_leave_no_shade() {
     let picture = sign();
-    let ground = |config: Config| drawn(&picture, &config).scene.ground;
-    let background = Background::Color([1.0; 3]);
-    assert_eq!(
-        ground(Config {
-            background,
-            ..draft(5)
-        }),
-        []
-    );
-    let background = Background::None;
-    assert_eq!(
-        ground(Config {
-            background,
-            ..draft(5)
-        }),
-        []
-    );
-    let colors = Colors::AtMost(3);
-    assert_eq!(ground(Config { colors, ..draft(5) }), []);
+    let background = |background| Config {
+        background,
+        ..draft(5)
+    };
+    let few_colors = Config {
+        colors: Colors::AtMost(3),
+        ..draft(5)
+    };
+    let white = Background::Color([1.0; 3]);
+    for config in [background(white), background(Background::None), few_colors] {
+        assert_eq!(drawn(&picture, &config).scene.ground, []);
+    }
 }
 
 #[test]

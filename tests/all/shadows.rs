@@ -1,12 +1,12 @@
 //! Soft shadows and glows: each is a blurred shape on the page, and kept.
 
-use crate::support::{draft, drawn, sample};
+use crate::support::{draft, drawn, on_white, rendered, sample};
 use strokefit::fit::{Background, Base, Colors, Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
 use strokefit::scene::{Scene, Shape};
 use strokefit::svg;
-use strokefit::verify::{self, Size};
+use strokefit::verify;
 
 /// The blur of a dark shape, and what casts it.
 const CARD: &str = r##"<rect x="30" y="34" width="110" height="60" rx="9" fill="#102040" fill-opacity="0.45" filter="url(#f)"/>
@@ -22,12 +22,11 @@ fn picture(page: Option<&str>, blur: f32, elements: &str) -> Image {
     let text = format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" width="170" height="130"><filter id="f" x="-50%" y="-50%" width="200%" height="200%" color-interpolation-filters="sRGB"><feGaussianBlur stdDeviation="{blur}"/></filter>{page}{elements}</svg>"##
     );
-    let size = Size::Scale(1.0);
-    let matte = |level: f32| verify::render(&text, size, Some([level; 3])).unwrap();
-    if !page.is_empty() {
-        return matte(1.0);
+    if page.is_empty() {
+        rendered(&text)
+    } else {
+        on_white(&text)
     }
-    verify::render(&text, size, None).unwrap()
 }
 
 fn judged(picture: &Image, config: &Config) -> (Scene, Quality) {
@@ -81,17 +80,17 @@ fn a_refined_drawing_keeps_its_shadow() {
 #[test]
 fn a_background_or_colours_that_are_given_leave_no_shadow() {
     let card = picture(Some("#e8ecf2"), 5.0, CARD);
-    let shadows = |config: Config| drawn(&card, &config).scene.ground.len();
-    let background = Background::Color([1.0; 3]);
-    assert_eq!(
-        shadows(Config {
-            background,
-            ..draft(9)
-        }),
-        0
-    );
-    let colors = Colors::AtMost(4);
-    assert_eq!(shadows(Config { colors, ..draft(9) }), 0);
+    let on_white = Config {
+        background: Background::Color([1.0; 3]),
+        ..draft(9)
+    };
+    let few_colors = Config {
+        colors: Colors::AtMost(4),
+        ..draft(9)
+    };
+    for config in [on_white, few_colors] {
+        assert_eq!(drawn(&card, &config).scene.ground, []);
+    }
 }
 
 #[test]

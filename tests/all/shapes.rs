@@ -84,22 +84,16 @@ fn shapes_come_back_as_elements() {
 }
 
 #[test]
-fn dots_of_one_colour_are_circles_each_and_holes_stay_holes() {
-    let (scene, text) = fitted(
-        r##"<g fill="#c03020"><circle cx="30" cy="30" r="8"/><circle cx="60" cy="30" r="8"/><circle cx="90" cy="30" r="8"/></g>
-        <path fill="#2060c0" fill-rule="evenodd" d="M20 60h110v50H20zM50 70h20v20H50z"/>"##,
-    );
-    assert_eq!(circles(&scene), 3, "{text}");
-    let holed = scene.areas().filter(|area| area.rings.len() == 2);
-    assert_eq!(holed.count(), 1, "{text}");
-}
-
-#[test]
-fn a_small_circle_is_no_rectangle() {
-    let (scene, text) = fitted(
-        r##"<rect x="20" y="20" width="120" height="80" fill="#d0a880"/><g fill="#662113"><circle cx="50.3" cy="60.4" r="3.6"/><circle cx="110.4" cy="60.4" r="3.6"/></g>"##,
-    );
-    assert_eq!(circles(&scene), 2, "{text}");
+fn dots_are_circles_each_and_holes_stay_holes() {
+    let dots_and_hole = r##"<g fill="#c03020"><circle cx="30" cy="30" r="8"/><circle cx="60" cy="30" r="8"/><circle cx="90" cy="30" r="8"/></g>
+        <path fill="#2060c0" fill-rule="evenodd" d="M20 60h110v50H20zM50 70h20v20H50z"/>"##;
+    let on_a_box = r##"<rect x="20" y="20" width="120" height="80" fill="#d0a880"/><g fill="#662113"><circle cx="50.3" cy="60.4" r="3.6"/><circle cx="110.4" cy="60.4" r="3.6"/></g>"##;
+    for (elements, dots, holes) in [(dots_and_hole, 3, 1), (on_a_box, 2, 0)] {
+        let (scene, text) = fitted(elements);
+        assert_eq!(circles(&scene), dots, "{text}");
+        let holed = scene.areas().filter(|area| area.rings.len() == 2);
+        assert_eq!(holed.count(), holes, "{text}");
+    }
 }
 
 #[test]

@@ -78,6 +78,10 @@ pub(crate) fn areas(width: f32, height: f32) -> Vec<Rings> {
     let off = |(x, y, _): (f32, f32, char)| (x, y, '~');
     let within =
         |(x, y, kind): (f32, f32, char)| (0.45 + 0.3 * (x - 0.45), 0.53 + 0.3 * (y - 0.53), kind);
+    let rect = |[x0, y0]: [f32; 2], [x1, y1]: [f32; 2]| {
+        [(x0, y0, 'o'), (x1, y0, 'o'), (x1, y1, 'o'), (x0, y1, 'o')]
+    };
+    let centre = |x: f32, y: f32| [x / width, y / height];
     let [e, f, g, h] = [a, b, c, d].map(within);
     vec![
         area("a triangle", &[&[a, b, c]]),
@@ -129,24 +133,8 @@ pub(crate) fn areas(width: f32, height: f32) -> Vec<Rings> {
             "a dot beside a square",
             &[&[a, b, c, d], &[(0.05, 0.9, 'o')]],
         ),
-        area(
-            "all of the picture",
-            &[&[
-                (-0.5, -0.5, 'o'),
-                (1.5, -0.5, 'o'),
-                (1.5, 1.5, 'o'),
-                (-0.5, 1.5, 'o'),
-            ]],
-        ),
-        area(
-            "off the picture",
-            &[&[
-                (-0.5, -0.5, 'o'),
-                (-0.1, -0.5, 'o'),
-                (-0.1, 1.5, 'o'),
-                (-0.5, 1.5, 'o'),
-            ]],
-        ),
+        area("all of the picture", &[&rect([-0.5, -0.5], [1.5, 1.5])]),
+        area("off the picture", &[&rect([-0.5, -0.5], [-0.1, 1.5])]),
         area(
             "beyond the right edge",
             &[&[
@@ -158,12 +146,7 @@ pub(crate) fn areas(width: f32, height: f32) -> Vec<Rings> {
         ),
         area(
             "on pixel centres",
-            &[&[
-                (2.5 / width, 2.5 / height, 'o'),
-                (6.5 / width, 2.5 / height, 'o'),
-                (6.5 / width, 5.5 / height, 'o'),
-                (2.5 / width, 5.5 / height, 'o'),
-            ]],
+            &[&rect(centre(2.5, 2.5), centre(6.5, 5.5))],
         ),
     ]
 }

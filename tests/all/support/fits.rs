@@ -1,5 +1,6 @@
 //! Samples, what the library makes of pictures, and how that looks.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use strokefit::fit::{Budget, Config, Fit, Fitter, Preset};
@@ -59,6 +60,15 @@ pub(crate) fn draft(strokes: usize) -> Config {
     Config {
         preset: Preset::Draft,
         ..within(of_strokes(strokes))
+    }
+}
+
+/// What an observer answers.
+pub(crate) fn goes_on(goes_on: bool) -> ControlFlow<()> {
+    if goes_on {
+        ControlFlow::Continue(())
+    } else {
+        ControlFlow::Break(())
     }
 }
 

@@ -11,6 +11,13 @@ use super::place::{Place, STROKEFIT};
 use super::words::Words;
 
 impl Place {
+    /// A folder with a picture `in.png`.
+    pub(crate) fn of_picture(width: u32, height: u32) -> Self {
+        let place = Self::new();
+        place.picture("in.png", width, height);
+        place
+    }
+
     pub(crate) fn file(&self, name: &str, bytes: impl AsRef<[u8]>) {
         fs::write(self.path(name), bytes).unwrap();
     }
