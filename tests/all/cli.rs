@@ -144,17 +144,6 @@ fn files_that_are_no_svg_are_refused() {
 }
 
 #[test]
-fn help_and_version_go_to_standard_output() {
-    let place = Place::new();
-    for args in ["--help", "fit --help", "check -h", "render -h", "--version"] {
-        let output = place.done(args);
-        let is_silent = output.stderr.is_empty();
-        assert!(is_silent && !output.stdout.is_empty(), "{args}");
-    }
-    assert_eq!(place.run("").status.code(), Some(2));
-}
-
-#[test]
 fn render_draws_at_the_scale_asked_for() {
     let place = with_red();
     place.done("render red.svg -o a.png --scale 2");
@@ -390,11 +379,14 @@ fn a_large_picture_is_drawn_of_fewer_pixels() {
     });
     picture.save(place.path("in.png")).unwrap();
     let head = r#"width="1536" height="1280" viewBox="0 0 768 640""#;
-    let said = place.said("fit in.png -o out.svg --preset draft --strokes 40", 0);
+    let said = place.said(
+        "fit in.png -o out.svg --preset draft --marks strokes --strokes 40",
+        0,
+    );
     assert_says(&said, &["1536×1280 px were drawn as 768×640"]);
     assert_says(&place.text("out.svg"), &[head]);
     // A refinement goes on from the drawing of a reduced picture.
-    place.done("refine out.svg in.png -o more.svg --strokes +20 --preset draft");
+    place.done("refine out.svg in.png -o more.svg --strokes +9 --preset draft --marks strokes");
     assert_says(&place.text("more.svg"), &[head]);
 }
 

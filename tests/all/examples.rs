@@ -11,7 +11,7 @@ mod observer;
 #[path = "../../examples/refine.rs"]
 mod refine;
 
-use crate::support::{committed, on_white};
+use crate::support::{committed, on_white, sample};
 use strokefit::fit::Stop;
 use strokefit::image::{Image, Limits};
 use strokefit::svg::{self, WriteOptions};
@@ -30,7 +30,7 @@ fn fit_writes_a_faithful_file() {
 #[test]
 fn observer_sees_the_drawing_grow_and_stops_it_before_its_time() {
     let mut patience = observer::Patience::default();
-    let picture = Image::open(committed("samples/noto-gem.png")).unwrap();
+    let picture = sample("noto-gem");
     let drawing = observer::draw(&picture, &mut patience).unwrap();
     assert_eq!(drawing.stop, Stop::Interrupted);
     assert!(patience.strokes.len() > 2, "{:?}", patience.strokes);
@@ -53,7 +53,7 @@ fn memory_gives_text_and_bytes_that_belong_together() {
 
 #[test]
 fn loss_gets_the_brightness_right_and_leaves_the_colours_alone() {
-    let picture = Image::open(committed("samples/coffee-300.png")).unwrap();
+    let picture = sample("coffee-300");
     let scene = loss::draw(&picture).unwrap();
     let text = svg::write(&scene, &WriteOptions::default());
     let drawn = on_white(&text);
@@ -74,9 +74,7 @@ fn loss_gets_the_brightness_right_and_leaves_the_colours_alone() {
 
 #[test]
 fn refine_keeps_the_base_and_comes_closer() {
-    let picture = Image::open(committed("samples/noto-gem.png"))
-        .unwrap()
-        .flattened([1.0; 3]);
+    let picture = sample("noto-gem").flattened([1.0; 3]);
     let body = r##"<circle cx="128" cy="128" r="90" fill="#40a0e0"/>"##;
     let base = format!(
         r#"<svg xmlns="http://www.w3.org/2000/svg" width="256" height="256" viewBox="0 0 256 256">{body}</svg>"#

@@ -17,15 +17,13 @@ struct Drawn {
 
 /// A draft of a sample in 150 strokes.
 fn drawn(name: &str, options: &str) -> Drawn {
-    drawn_with(name, &format!("--strokes 150 {options}"))
+    fitted(name, &format!("--preset draft --strokes 150 {options}"))
 }
 
-/// A draft of a sample.
-fn drawn_with(name: &str, options: &str) -> Drawn {
+fn fitted(name: &str, options: &str) -> Drawn {
     let place = Place::new();
-    place.done(&format!(
-        "fit @samples/{name}.png -o a.svg --report a.json -q --preset draft {options}"
-    ));
+    let files = format!("@samples/{name}.png -o a.svg --report a.json");
+    place.done(&format!("fit {files} -q {options}"));
     Drawn {
         text: place.text("a.svg"),
         report: place.report("a.json"),
@@ -65,8 +63,8 @@ fn the_smallest_file_of_as_many_strokes_is_a_fifth_shorter() {
 #[test]
 fn the_smallest_file_of_lines_and_flat_art_looks_like_the_plain_one() {
     for name in ["bicycle", "noto-gem"] {
-        let plain = drawn_with(name, "");
-        let smallest = drawn_with(name, "--form smallest");
+        let plain = fitted(name, "--preset draft");
+        let smallest = fitted(name, "--preset draft --form smallest");
         assert!(smallest.text.len() < plain.text.len(), "{name}");
         let lost = plain.psnr_db() - smallest.psnr_db();
         assert!(lost < 0.5, "{name}: {lost}");
@@ -77,7 +75,7 @@ fn the_smallest_file_of_lines_and_flat_art_looks_like_the_plain_one() {
 fn an_opaque_capsule_of_the_smallest_file_takes_52_bytes_at_most() {
     for name in ["coffee-300", "noto-hibiscus", "noto-telescope"] {
         let options = "--opaque --precision 1 --form smallest --strokes 600 --points 2";
-        let drawn = drawn_with(name, options);
+        let drawn = fitted(name, options);
         let bytes = drawn.number("bytes_per_stroke");
         assert_eq!(drawn.number("strokes"), 600.0);
         assert!(bytes <= 52.0, "{name}: {bytes}");
@@ -91,7 +89,7 @@ fn a_budget_of_bytes_buys_more_in_the_smallest_form() {
     let bought = |form: &str| {
         // Drafts differ by 0.6 dB from one budget to the next, which is more than the form brings.
         let options = format!("--bytes 9000 --opaque --form {form} --look exact");
-        let drawn = drawn_with("coffee-300", &options);
+        let drawn = fitted("coffee-300", &options);
         assert!(drawn.text.len() <= 9000);
         (drawn.number("strokes"), drawn.psnr_db())
     };

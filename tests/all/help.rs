@@ -5,19 +5,23 @@ use std::process::Stdio;
 use crate::support::{Place, STROKEFIT, Words, assert_refused, assert_says, stderr};
 
 #[test]
-fn help_shows_examples_first_and_no_colour_in_a_pipe() {
+fn help_is_printed_with_examples_first_and_no_colour_in_a_pipe() {
     let place = Place::new();
     let commands = ["fit", "refine", "check", "render", "completions", "man"];
     for command in commands {
-        let help = place.printed(&[command, "--help"]);
-        let (examples, usage) = (
-            help.find("Examples:").unwrap(),
-            help.find("Usage:").unwrap(),
-        );
-        assert!(examples < usage, "{help}");
-        assert!(help.contains(&format!("  strokefit {command} ")), "{help}");
+        let output = place.done(&[command, "--help"]);
+        assert_eq!(stderr(&output), "");
+        let help = String::from_utf8(output.stdout).unwrap();
+        let (examples, usage) = (help.find("Examples:"), help.find("Usage:"));
+        assert!(examples.is_some() && examples < usage, "{help}");
+        assert_says(&help, &[&format!("  strokefit {command} ")]);
         assert!(!help.contains('\u{1b}'), "{help}");
+        assert!(!place.printed(&[command, "-h"]).is_empty());
     }
+    for args in ["--help", "--version"] {
+        assert!(!place.printed(args).is_empty(), "{args}");
+    }
+    assert_eq!(place.run("").status.code(), Some(2));
 }
 
 /// Every example of the help of `fit` is understood, up to the files that it names.

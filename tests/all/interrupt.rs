@@ -3,14 +3,13 @@
 
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
-use std::path::Path;
 use std::process::{Child, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::{Place, STROKEFIT, send, skip};
+use crate::support::{Place, STROKEFIT, Words, send, skip, stderr};
 
 /// A fit that takes hours when it is left alone.
-const ENDLESS: [&str; 4] = ["--preset", "best", "--strokes", "30000"];
+const ENDLESS: &str = "--preset best --strokes 30000";
 /// Most time for any moment of a fit, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -22,40 +21,30 @@ fn picture(place: &Place, width: u32, height: u32) {
     picture.save(place.path("in.png")).unwrap();
 }
 
-fn fit(place: &Place, through: &[&str], options: &[&str]) -> Child {
-    let words: Vec<&str> = through.iter().copied().chain([STROKEFIT]).collect();
-    place
-        .command(words[0])
-        .args(&words[1..])
-        .args(["fit", "in.png", "-o", "out.svg", "--report", "out.json"])
-        .args(options)
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap()
+/// A fit that a program begins, `env` if no other.
+fn fit(place: &Place, through: &[&str], options: &str) -> Child {
+    let args = format!("fit in.png -o out.svg --report out.json {options}");
+    let mut command = place.command("env");
+    command.args(through).arg(STROKEFIT).args(args.words());
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    command.spawn().unwrap()
 }
 
 /// Waits until the process catches `signal`: until its fit is about to begin.
 fn await_fit(child: &Child, signal: i32) {
+    await_that("the fit does not begin", || catches(child.id(), signal));
+}
+
+fn await_that(otherwise: &str, is_so: impl Fn() -> bool) {
     let start = Instant::now();
-    while !catches(child.id(), signal) {
-        assert!(start.elapsed() < PATIENCE, "the fit does not begin");
+    while !is_so() {
+        assert!(start.elapsed() < PATIENCE, "{otherwise}");
         std::thread::sleep(Duration::from_millis(2));
     }
 }
 
 fn catches(process: u32, signal: i32) -> bool {
     is_in(process, "SigCgt:", signal)
-}
-
-/// Waits until `signal`, which was sent, has reached the process: of two that wait together, either may come
-/// first.
-fn await_arrival(child: &Child, signal: i32) {
-    let start = Instant::now();
-    while is_in(child.id(), "ShdPnd:", signal) {
-        assert!(start.elapsed() < PATIENCE, "the signal does not arrive");
-        std::thread::sleep(Duration::from_millis(2));
-    }
 }
 
 /// True if `signal` is in a set of signals that Linux tells of a process.
@@ -79,9 +68,9 @@ fn end(mut child: Child) -> Output {
     child.wait_with_output().unwrap()
 }
 
-fn strokes(svg: &Path) -> usize {
-    let text = fs::read_to_string(svg).unwrap();
-    strokefit::svg::read(&text).unwrap().len()
+fn strokes(place: &Place) -> usize {
+    let scene = strokefit::svg::read(&place.text("out.svg"));
+    scene.unwrap().len()
 }
 
 #[test]
@@ -89,24 +78,22 @@ fn every_signal_leaves_the_drawing_so_far() {
     for (signal, wait_ms) in [(2, 300), (15, 0), (1, 1000)] {
         if is_in(std::process::id(), "SigIgn:", signal) {
             // As shells start what runs in the background of a script.
-            skip(&format!(
-                "signal {signal} is ignored from outside, and stays so"
-            ));
+            skip(&format!("signal {signal} is ignored from outside"));
             continue;
         }
         let place = Place::new();
         picture(&place, 200, 150);
-        let child = fit(&place, &[], &ENDLESS);
+        let child = fit(&place, &[], ENDLESS);
         await_fit(&child, signal);
         std::thread::sleep(Duration::from_millis(wait_ms));
         send(&child, signal);
         let output = end(child);
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.signal(), Some(signal), "{stderr}");
-        assert!(stderr.contains("interrupted"), "{stderr}");
+        let said = stderr(&output);
+        assert_eq!(output.status.signal(), Some(signal), "{said}");
+        assert!(said.contains("interrupted"), "{said}");
         let report = place.report("out.json");
         assert_eq!(report["stop"], "interrupted");
-        let drawn = strokes(&place.path("out.svg"));
+        let drawn = strokes(&place);
         assert_eq!(report["strokes"], drawn, "signal {signal}");
         assert!(drawn > 0 || wait_ms == 0, "signal {signal}");
     }
@@ -118,7 +105,7 @@ fn at_every_moment_there_is_a_whole_file_or_none() {
     for wait_ms in (0..16).map(|i| i * i * 3) {
         let place = Place::new();
         picture(&place, 120, 90);
-        let child = fit(&place, &[], &["--preset", "draft", "--strokes", "300"]);
+        let child = fit(&place, &[], "--preset draft --strokes 300");
         std::thread::sleep(Duration::from_millis(wait_ms));
         let running = catches(child.id(), 15);
         send(&child, 15);
@@ -127,20 +114,15 @@ fn at_every_moment_there_is_a_whole_file_or_none() {
             status.signal() == Some(15) || status.code() == Some(0),
             "{status}"
         );
-        let names: Vec<_> = fs::read_dir(place.path("."))
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .filter(|name| name != "in.png")
-            .collect();
+        let mut names = place.names();
+        names.retain(|name| name != "in.png");
         // A signal before the fit ends the program as any other; afterwards there is a drawing.
         if names.is_empty() {
-            assert!(
-                !running && status.signal() == Some(15),
-                "after {wait_ms} ms"
-            );
+            let is_ended = status.signal() == Some(15);
+            assert!(!running && is_ended, "after {wait_ms} ms");
         } else {
             assert_eq!(names.len(), 2, "{names:?} after {wait_ms} ms");
-            strokes(&place.path("out.svg"));
+            strokes(&place);
         }
     }
 }
@@ -149,16 +131,17 @@ fn at_every_moment_there_is_a_whole_file_or_none() {
 fn a_second_signal_ends_at_once_and_leaves_the_old_file() {
     let place = Place::new();
     picture(&place, 2400, 1600);
-    fs::write(place.path("out.svg"), "old").unwrap();
-    let child = fit(&place, &[], &ENDLESS);
+    place.file("out.svg", "old");
+    let child = fit(&place, &[], ENDLESS);
     await_fit(&child, 15);
     // Not a hangup, which is ignored where tests run under `nohup`.
     send(&child, 15);
-    await_arrival(&child, 15);
+    // Of two that wait together, either may come first.
+    let has_arrived = || !is_in(child.id(), "ShdPnd:", 15);
+    await_that("the signal does not arrive", has_arrived);
     send(&child, 15);
     assert_eq!(end(child).status.signal(), Some(15));
-    let svg = place.text("out.svg");
-    assert_eq!(svg, "old");
+    assert_eq!(place.text("out.svg"), "old");
 }
 
 #[test]
@@ -166,7 +149,7 @@ fn a_signal_that_is_ignored_from_outside_stays_ignored() {
     let place = Place::new();
     picture(&place, 120, 90);
     let through = ["sh", "-c", "trap '' HUP; exec \"$0\" \"$@\""];
-    let child = fit(&place, &through, &["--preset", "draft", "--strokes", "300"]);
+    let child = fit(&place, &through, "--preset draft --strokes 300");
     await_fit(&child, 15);
     send(&child, 1);
     assert_eq!(end(child).status.code(), Some(0));

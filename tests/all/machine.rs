@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::process::Command;
 
-use crate::support::{Place, Words, agreement, assert_refused, committed, skip};
+use crate::support::{Place, Words, agreement, assert_refused, assert_says, committed, skip};
 use kurbo::Shape;
 use strokefit::image::Image;
 use strokefit::scene::{Mark, Path, Scene};
@@ -242,34 +242,34 @@ fn averaged(image: &Image) -> Image {
 }
 
 #[test]
-fn a_pdf_has_the_gradient_and_the_opacities() {
-    let place = Place::new();
-    for name in ["fade-400", "glow-300"] {
-        let fit = format!("fit @samples/{name}.png -o a.svg -o a.pdf -q --preset draft");
-        place.done(&fit);
-        let seen = as_pdf(&place);
-        assert!(seen.is_none_or(|seen| seen > 34.0), "{name}: {seen:?}");
+fn a_pdf_has_gradients_opacities_square_ends_and_shapes() {
+    let chevrons = Place::new();
+    chevrons.done("render @tests/data/plans/chevrons.svg -o in.png -q");
+    let dog = with_picture("twemoji__dog");
+    for (place, fit, part, least_db) in [
+        (
+            &chevrons,
+            "@samples/fade-400.png --preset draft",
+            "<linearGradient",
+            34.0,
+        ),
+        (
+            &chevrons,
+            "@samples/glow-300.png --preset draft",
+            "<radialGradient",
+            34.0,
+        ),
+        (&chevrons, "in.png", "<path d=", 33.0),
+        (&dog, "a.png", "<circle", 34.0),
+    ] {
+        place.done(&format!("fit {fit} -o a.svg -o a.pdf -q"));
+        let text = place.text("a.svg");
+        assert_says(&text, &[part]);
+        let has_areas = svg::read(&text).unwrap().areas().count() > 0;
+        assert!(fit != "in.png" || !has_areas, "{text}");
+        let seen = as_pdf(place);
+        assert!(seen.is_none_or(|seen| seen > least_db), "{fit}: {seen:?}");
     }
-}
-
-#[test]
-fn a_pdf_has_square_ends_and_mitred_corners() {
-    let place = Place::new();
-    place.done("render @tests/data/plans/chevrons.svg -o chevrons.png -q");
-    place.done("fit chevrons.png -o a.svg -o a.pdf -q");
-    let text = place.text("a.svg");
-    assert_eq!(svg::read(&text).unwrap().areas().count(), 0, "{text}");
-    let seen = as_pdf(&place);
-    assert!(seen.is_none_or(|seen| seen > 33.0), "{seen:?}");
-}
-
-#[test]
-fn a_pdf_has_the_shapes() {
-    let place = with_picture("twemoji__dog");
-    let text = fitted(&place, "-o a.pdf");
-    assert!(text.contains("<circle"), "{text}");
-    let seen = as_pdf(&place);
-    assert!(seen.is_none_or(|seen| seen > 34.0), "{seen:?}");
 }
 
 /// Reads a DXF and prints how many things there are, their bounds in mm, its unit, and the errors that ezdxf finds.

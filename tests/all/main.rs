@@ -54,11 +54,11 @@ mod fit;
 mod fitter;
 mod fuzz;
 mod gradients;
+mod ground;
 mod imports;
 mod points;
 mod render;
 mod repeatability;
-mod shade;
 mod shapes;
 
 // The program, and what the library has for it alone.
@@ -98,7 +98,6 @@ mod progress;
 mod refine;
 #[cfg(all(feature = "cli", unix))]
 mod rig;
-mod shadows;
 #[cfg(feature = "cli")]
 mod shape_files;
 #[cfg(feature = "cli")]

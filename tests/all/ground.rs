@@ -1,0 +1,167 @@
+//! What lies on the page itself: gradients, soft shadows and glows are chosen where the picture has them, and kept.
+
+use crate::support::{draft, drawn, on_white, rendered, sample};
+use strokefit::fit::{Background, Base, Colors, Config, Fitter};
+use strokefit::image::Image;
+use strokefit::metrics::Quality;
+use strokefit::scene::{Scene, Shape};
+use strokefit::{svg, verify};
+
+/// A ramp with a red square on it.
+fn sign() -> Image {
+    let (width, height) = (96, 64);
+    let ends = [[0.2, 0.9], [0.5, 0.6], [0.9, 0.3]];
+    let level = |x: usize, y: usize, c: usize| {
+        if (30..50).contains(&x) && (20..40).contains(&y) {
+            return [0.9, 0.1, 0.1][c];
+        }
+        let [from, to] = ends[c];
+        let part = (x as f32 + 0.5) / width as f32;
+        ((from + (to - from) * part) * 255.0).round() / 255.0
+    };
+    Image::from_fn(width, height, 3, level).unwrap()
+}
+
+fn has_gradient(scene: &Scene) -> bool {
+    scene.ground.iter().any(|area| area.shade.is_some())
+}
+
+/// The blur of a dark shape, and what casts it.
+const CARD: &str = r##"<rect x="30" y="34" width="110" height="60" rx="9" fill="#102040" fill-opacity="0.45" filter="url(#f)"/>
+<rect x="30" y="28" width="110" height="60" rx="9" fill="#fdfdfd"/><circle cx="60" cy="58" r="14" fill="#e05020"/>"##;
+const STAR: &str = r##"<path d="M86 18L100 56 140 58 108 82 120 122 86 98 52 122 64 82 30 58 70 56z" fill="#30c0ff" filter="url(#f)"/>
+<path d="M86 18L100 56 140 58 108 82 120 122 86 98 52 122 64 82 30 58 70 56z" fill="#fff6d0"/>"##;
+
+/// A picture of 170×130 px of these elements on a page of a colour, or on none, as resvg draws it.
+fn picture(page: Option<&str>, blur: f32, elements: &str) -> Image {
+    let page = page.map_or_else(String::new, |color| {
+        format!(r##"<rect width="170" height="130" fill="{color}"/>"##)
+    });
+    let text = format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="170" height="130"><filter id="f" x="-50%" y="-50%" width="200%" height="200%" color-interpolation-filters="sRGB"><feGaussianBlur stdDeviation="{blur}"/></filter>{page}{elements}</svg>"##
+    );
+    if page.is_empty() {
+        rendered(&text)
+    } else {
+        on_white(&text)
+    }
+}
+
+fn judged(picture: &Image, config: &Config) -> (Scene, Quality) {
+    let fit = drawn(picture, config);
+    let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
+    assert!(verdict.agreement.psnr_db > 38.0, "{verdict:?}");
+    assert_eq!(svg::read(&fit.svg()).unwrap(), fit.scene);
+    assert_eq!(svg::lint(&fit.svg()), []);
+    (fit.scene, verdict.fidelity)
+}
+
+#[test]
+fn a_glow_and_a_fade_are_a_gradient_each() {
+    for name in ["glow-300", "fade-400"] {
+        let picture = sample(name);
+        let fit = drawn(&picture, &Config::default());
+        assert!(has_gradient(&fit.scene) && fit.scene.len() <= 40, "{name}");
+        let seen = verify::on_mattes(&fit.svg(), &picture).unwrap();
+        for score in [
+            seen.black_ssimulacra2,
+            seen.white_ssimulacra2,
+            seen.magenta_ssimulacra2,
+        ] {
+            assert!(score >= 85.0, "{name}: {seen:?}");
+        }
+    }
+}
+
+#[test]
+fn strokes_are_drawn_on_a_gradient() {
+    let fit = drawn(&sign(), &draft(20));
+    assert!(has_gradient(&fit.scene) && fit.scene.background.is_none());
+    assert!(!fit.scene.is_empty());
+    let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
+    let [seen, agreement] = [verdict.fidelity.psnr_db, verdict.agreement.psnr_db];
+    assert!(seen > 30.0 && agreement > 36.0, "{verdict:?}");
+    assert_eq!(svg::read(&fit.svg()).unwrap(), fit.scene);
+}
+
+#[test]
+fn a_card_casts_the_shadow_that_was_drawn() {
+    let card = picture(Some("#e8ecf2"), 6.0, CARD);
+    let (scene, fidelity) = judged(&card, &Config::default());
+    let [shadow] = &scene.ground[..] else {
+        panic!("{:?}", scene.ground);
+    };
+    assert!((shadow.blur - 6.0).abs() < 0.8, "{shadow:?}");
+    let Some(Shape::Rect { low, high, .. }) = shadow.rings[0].shape() else {
+        panic!("{shadow:?}");
+    };
+    let sides = [low.x - 30.0, low.y - 34.0, high.x - 140.0, high.y - 94.0];
+    assert!(sides.iter().all(|off| off.abs() < 1.5), "{shadow:?}");
+    assert!(scene.len() <= 4 && fidelity.psnr_db > 46.0, "{fidelity:?}");
+}
+
+#[test]
+fn a_glow_around_a_star_is_a_blur_of_it_on_a_page_and_on_none() {
+    for page in [Some("#101428"), None] {
+        let star = picture(page, 7.0, STAR);
+        let (scene, fidelity) = judged(&star, &Config::default());
+        assert!(!scene.ground.is_empty(), "{page:?}");
+        assert!(
+            scene.len() <= 3 && fidelity.psnr_db > 42.0,
+            "{page:?} {fidelity:?}"
+        );
+    }
+}
+
+#[test]
+fn a_refined_drawing_keeps_its_ground() {
+    let card = picture(Some("#e8ecf2"), 5.0, CARD);
+    for (picture, config) in [(sign(), draft(5)), (card, Config::default())] {
+        let first = drawn(&picture, &config);
+        assert_eq!(first.scene.ground.len(), 1);
+        let base = Base::read(first.svg(), &picture, false).unwrap();
+        let second = Fitter::new(draft(20)).on(base).fit(&picture).unwrap();
+        assert_eq!(second.scene.ground, first.scene.ground);
+        assert_eq!(svg::read(&second.svg()).unwrap(), second.scene);
+    }
+}
+
+#[test]
+fn a_background_or_colours_that_are_given_leave_none() {
+    let background = |background| Config {
+        background,
+        ..draft(9)
+    };
+    let few_colors = Config {
+        colors: Colors::AtMost(3),
+        ..draft(9)
+    };
+    let white = background(Background::Color([1.0; 3]));
+    let card = picture(Some("#e8ecf2"), 5.0, CARD);
+    for (picture, config) in [
+        (&sign(), &white),
+        (&sign(), &background(Background::None)),
+        (&sign(), &few_colors),
+        (&card, &white),
+        (&card, &few_colors),
+    ] {
+        assert_eq!(drawn(picture, config).scene.ground, []);
+    }
+}
+
+#[test]
+fn only_a_glow_and_a_fade_have_a_gradient_and_neither_has_a_shadow() {
+    let others = [
+        "chelsea-cat",
+        "coffee-300",
+        "rocket-320",
+        "noto-gem",
+        "noto-hibiscus",
+        "bicycle",
+    ];
+    for name in others.into_iter().chain(["glow-300", "fade-400"]) {
+        let scene = drawn(&sample(name), &draft(9)).scene;
+        assert_eq!(has_gradient(&scene), !others.contains(&name), "{name}");
+        assert!(scene.ground.iter().all(|area| area.blur == 0.0), "{name}");
+    }
+}
