@@ -31,15 +31,13 @@ mod support {
     #[cfg(feature = "cli")]
     mod skip;
     #[cfg(feature = "cli")]
-    mod verdicts;
-    #[cfg(feature = "cli")]
     mod words;
 
     #[cfg(feature = "cli")]
     pub(crate) use {
-        engine::installed, output::stderr, place::Place, place::STROKEFIT, runs::assert_refused,
-        runs::assert_says, signal::send, skip::skip, verdicts::entry, verdicts::record,
-        words::Words,
+        engine::entry, engine::installed, engine::record, output::stderr, place::Place,
+        place::STROKEFIT, runs::agreement, runs::assert_refused, runs::assert_says, signal::send,
+        skip::skip, words::Words,
     };
 }
 

@@ -66,7 +66,7 @@ fn refined_strokes_get_the_pens_on_the_page_of_the_base() {
     ));
     let text = place.text("b.svg");
     assert_eq!(widths(&text), [200].into());
-    assert!(text.contains("width=\"100mm\""));
+    assert!(text.contains("width=\"100mm\" height=\"65mm\""));
 }
 
 #[test]

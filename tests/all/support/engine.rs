@@ -1,9 +1,12 @@
-//! Programs that draw SVG, for tests that need one.
+//! Programs that draw SVG, for tests that need one, and verdicts of `check --report -` on them.
 
 use std::path::PathBuf;
+use std::process::Output;
 
+use serde_json::Value;
 use strokefit::engines::{ENGINES, Engine};
 
+use super::output::stderr;
 use super::skip::skip;
 
 /// The engine and its program; `None`, with the test reported as skipped, where it is not installed.
@@ -23,4 +26,15 @@ pub(crate) fn installed(name: &str) -> Option<(&'static Engine, PathBuf)> {
     );
     skip(&format!("{name} is not installed: {}", engine.install));
     None
+}
+
+pub(crate) fn record(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", stderr(output)))
+}
+
+/// Record of a program that drew the file.
+pub(crate) fn entry<'a>(record: &'a Value, name: &str) -> &'a Value {
+    let entries = record["renderers"].as_array().unwrap();
+    let found = entries.iter().find(|e| e["renderer"] == name);
+    found.unwrap_or_else(|| panic!("{name} drew nothing: {record}"))
 }

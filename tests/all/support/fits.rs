@@ -5,7 +5,6 @@ use std::path::Path;
 
 use strokefit::fit::{Budget, Config, Fit, Fitter, Preset};
 use strokefit::image::Image;
-use strokefit::metrics::Agreement;
 use strokefit::verify::{self, Size};
 
 /// The whole path of a file that is committed as `path`.
@@ -84,9 +83,4 @@ pub(crate) fn rendered(svg: &str) -> Image {
 /// An SVG on white paper.
 pub(crate) fn on_white(svg: &str) -> Image {
     verify::render(svg, Size::Scale(1.0), Some([1.0; 3])).unwrap()
-}
-
-/// Agreement of two renders, dB.
-pub(crate) fn agreement(a: &Image, b: &Image) -> f64 {
-    Agreement::between(a, b).unwrap().psnr_db
 }

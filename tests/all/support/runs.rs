@@ -5,6 +5,8 @@ use std::io::Write;
 use std::process::{Output, Stdio};
 
 use serde_json::Value;
+use strokefit::image::Image;
+use strokefit::metrics::Agreement;
 
 use super::output::stderr;
 use super::place::{Place, STROKEFIT};
@@ -110,4 +112,9 @@ pub(crate) fn assert_refused(
     let printed = &output.stdout;
     assert!(printed.is_empty(), "{args:?} wrote on standard output");
     assert_eq!(place.names(), before, "{args:?} left a file");
+}
+
+/// Agreement of two renders, dB.
+pub(crate) fn agreement(a: &Image, b: &Image) -> f64 {
+    Agreement::between(a, b).unwrap().psnr_db
 }
