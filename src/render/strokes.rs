@@ -361,14 +361,6 @@ impl Strokes {
         }
     }
 
-    /// Moves the points of stroke `i`, whose number stays.
-    pub fn move_points(&mut self, i: usize, points: &[[f32; 2]]) {
-        let range = self.range(i);
-        let numbers = self.numbers[range].iter_mut();
-        let points = points.as_flattened();
-        numbers.zip(points).for_each(|(number, &at)| *number = at);
-    }
-
     /// Replaces the gradients of areas by their colours.
     pub fn flatten_paints(&mut self) {
         self.paints.clear();
