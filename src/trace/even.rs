@@ -20,7 +20,9 @@ pub(super) struct Shape<I, R> {
 
 /// Farthest that a ray's length may be from the radius: px, and in units of the radius. Guesses.
 const ODD: [f32; 2] = [0.3, 0.12];
-/// Below this radius, px, a line has round ends unless it is nearer to square ones. A guess.
+/// Below the first radius, px, a picture does not tell round ends from square ones, and below the second one a line has round
+/// ends unless it is nearer to square ones. Guesses.
+const THINNEST: f32 = 2.2;
 const THIN: f32 = 3.9;
 /// Share of the places along a stroke that may be odd: thinning and crossings distort some. A guess.
 const MOST_ODD: f32 = 0.15;
@@ -49,8 +51,14 @@ impl Pen {
 /// Farthest that the middle of a traced line is from its place, px. A guess.
 pub(super) const WAVERING: f64 = 0.6;
 
+/// Shortest side of a line with square ends, in radii: bends have shorter ones. A guess.
+const SIDE: f32 = 3.0;
+
 /// Places before an end, in radii, beside which something else has to be seen if that goes on beside the end. Guesses.
 const BACK: [f32; 3] = [0.0, 0.4, 0.8];
+
+/// Forms whose rays differ by less, px, look alike. A guess.
+const ALIKE: f32 = 0.4;
 
 /// The form of an end or a corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,7 +75,12 @@ impl Form {
         // The middle of a blurred edge cuts a right angle off by about half a px.
         let blur = (square / round - 1.0) / (SQRT_2 - 1.0);
         let square = square - 0.5 * blur.min(1.0);
-        let nearer = tolerance.min(0.5 * (square - round));
+        // Slight turns look alike.
+        let is_told = square - round >= ALIKE;
+        let nearer = match is_told {
+            true => tolerance.min(0.5 * (square - round)),
+            false => tolerance,
+        };
         match self {
             Self::Round => (ray - round).abs() <= tolerance,
             Self::Rounder => (ray - round).abs() <= nearer,
@@ -124,10 +137,15 @@ impl<I: Fn(Place) -> f32, R: Fn(Place) -> Option<u32>> Shape<I, R> {
     /// The line of this radius with square ends and mitred corners along the middle of a stroke, if the shape may have those;
     /// and true if they may as well be round.
     fn band(&self, stroke: &Stroke, radius: f32) -> Option<(Band, bool)> {
+        if radius < THINNEST {
+            return None;
+        }
         let path = self.centered(&polyline(&stroke.path, WAVERING, radius.into())?, radius)?;
         let (line, is_closed) = (places_of(&path), path.is_closed());
+        let mut sides = line.windows(2);
+        let is_long = sides.all(|ends| distance(ends[0], ends[1]) >= SIDE * radius);
         let places = along(&line, 1.0);
-        if !self.has(&line, &places, is_closed, radius, Form::Square) {
+        if !is_long || !self.has(&line, &places, is_closed, radius, Form::Square) {
             return None;
         }
         let beyond = |(at, way)| self.ray(at, way, 2.2 * radius + 2.0).unwrap_or(0.0);

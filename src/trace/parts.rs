@@ -351,8 +351,11 @@ fn usual_radius(shape: &Shape, depths: &[f32]) -> Option<f32> {
     let is_ridge =
         |&i: &usize| shape.inside[i] && around(shape.width, i, 1).all(|k| depths[k] <= depths[i]);
     let ridges = (0..depths.len()).filter(is_ridge);
-    median(ridges.map(|i| depths[i]))
+    Some(median(ridges.map(|i| depths[i]))?.max(LEAST_RADIUS))
 }
+
+/// Lines are at least as wide as this, px: depths are whole pixels. A guess.
+const LEAST_RADIUS: f32 = 0.8;
 
 /// Lines have more pixels than this. A guess.
 const LEAST_PIXELS: f32 = 12.0;
