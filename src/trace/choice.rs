@@ -24,9 +24,8 @@ struct Group {
     regions: Vec<u32>,
 }
 
-/// Strokes may cost so many times as much as areas, as they are easier to edit and have points that do not pay. At 2 roads are areas,
-/// at 3.5 the outline of a face is a stroke and a bar.
-const MOST_PRICE: f32 = 2.75;
+/// Traced strokes have points that do not pay, so they may cost so many times as much as areas. A guess.
+const MOST_PRICE: f32 = 4.0;
 
 /// The regions under a stroke, with the pixels of each that it covers.
 type Votes = BTreeMap<u32, f32>;

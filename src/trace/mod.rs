@@ -8,8 +8,7 @@
 //! skeleton   the middle of each shape, as a graph
 //! lines      the graph's edges, joined to long lines that run through crossings
 //! bridges    lines that go on below others, and rings
-//! chain      runs of samples as lines and quadratic splines
-//! spline     the corners of a line, and chains between them
+//! spline     corners and control points
 //! gain       the share of the residual that each stroke explains
 //! strokes    all of that
 //! fill       filled shapes, stacked
@@ -22,7 +21,6 @@
 
 mod areas;
 mod bridges;
-mod chain;
 mod choice;
 mod even;
 mod fill;

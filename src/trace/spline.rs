@@ -1,19 +1,20 @@
-//! Splines: a line as the few points of a path.
+//! Splines: a run of places as the few points of a path.
 //!
-//! The line is cut at its corners. Between two of them lies the cheapest chain of spans.
+//! A line is cut at its corners. Between two corners lies a quadratic spline through as few control points as keep it
+//! within a tolerance; none makes a straight line.
 
-use super::chain::{Sample, chain};
+use std::ops::RangeInclusive;
+
 use super::lines::Line;
-use crate::math::{self, distance};
+use crate::math::{self, Normal, direction, nearest_on_segment};
 use crate::scene::{Path, PathPoint};
 
 /// The cosine of a corner's turn within [`CORNER_REACH`] radii is less than this. A guess.
 const CORNER: f32 = 0.62;
 /// Reach to either side of a place over which its turn is measured, in radii. A guess.
 const CORNER_REACH: f32 = 0.9;
-/// Farthest that a path may be from its line, px and in units of the radius. 0.15, 0.2, 0.25, 0.35 px: a bicycle has 36.7, 36.9, 35.8,
-/// 36.5 dB in 13.7, 13.5, 15.4, 12.7 kB, a score 36.2, 36.1, 36.0, 35.6 dB in 8.7, 8.6, 8.4, 7.9 kB, a signature 33, 42, 40, 41 marks.
-const TOLERANCE: [f32; 2] = [0.15, 0.03];
+/// Farthest that a spline may be from its line, px and in units of the radius. A guess.
+const TOLERANCE: [f32; 2] = [0.35, 0.03];
 /// Distance between the places of a resampled line, px.
 const STEP: f32 = 1.0;
 type Place = [f32; 2];
@@ -23,31 +24,54 @@ pub(super) fn path(line: &Line, radius: f32) -> Path {
     let places: Vec<Place> = line.spots.iter().map(|spot| spot.at).collect();
     let mut places = resampled(&places, line.closed);
     if places.len() < 3 {
-        let points = places.into_iter().map(|at| PathPoint::on(math::point(at)));
-        return Path::of_points(points.collect(), false);
+        return open_path(places, Vec::new());
     }
     // Pixels make stairs, the larger ones the wider the line is.
     smooth(&mut places, line.closed, (0.25 * radius) as usize + 1);
     let [px, radii] = TOLERANCE;
     let tolerance = px + radii * radius;
-    let mut corners = corners(&places, line.closed, radius);
+    let corners = corners(&places, line.closed, radius);
     if line.closed {
-        // From the first corner around to it, or from any place.
-        let first = corners.first().copied().unwrap_or(0);
-        places.rotate_left(first);
-        places.push(places[0]);
-        corners.iter_mut().for_each(|corner| *corner -= first);
-    } else {
-        corners.insert(0, 0);
+        return closed_path(places, &corners, tolerance);
     }
-    let points = points(&places, corners, tolerance);
-    let points = points.into_iter().map(|(at, is_on)| PathPoint {
-        at: math::point(at),
-        is_on,
-    });
-    let end = places.last().filter(|_| !line.closed);
-    let end = end.map(|&end| PathPoint::on(math::point(end)));
-    Path::of_points(points.chain(end).collect(), line.closed)
+    let mut cuts = corners;
+    cuts.insert(0, 0);
+    cuts.push(places.len() - 1);
+    let points = runs(&places, &cuts, tolerance);
+    open_path(vec![places[0]], points)
+}
+
+fn open_path(start: Vec<Place>, rest: Vec<PathPoint>) -> Path {
+    let mut points: Vec<PathPoint> = start.into_iter().map(on).collect();
+    points.extend(rest);
+    Path::of_points(points, false)
+}
+
+fn closed_path(mut places: Vec<Place>, corners: &[usize], tolerance: f32) -> Path {
+    let Some(&first) = corners.first() else {
+        let points = ring(&places, tolerance);
+        return Path::of_points(points, true);
+    };
+    places.rotate_left(first);
+    places.push(places[0]);
+    let mut cuts: Vec<usize> = corners.iter().map(|corner| corner - first).collect();
+    cuts.push(places.len() - 1);
+    let mut points = runs(&places, &cuts, tolerance);
+    // The last point is the first corner again.
+    points.rotate_right(1);
+    Path::of_points(points, true)
+}
+
+fn on(place: Place) -> PathPoint {
+    PathPoint::on(math::point(place))
+}
+
+fn off(place: Place) -> PathPoint {
+    PathPoint::off(math::point(place))
+}
+
+fn distance(a: Place, b: Place) -> f32 {
+    math::hypot(f64::from(a[0] - b[0]), f64::from(a[1] - b[1])) as f32
 }
 
 /// Places evenly along a polyline, with its ends.
@@ -129,40 +153,267 @@ fn corners(places: &[Place], closed: bool, radius: f32) -> Vec<usize> {
     (0..count).filter(is_sharpest).collect()
 }
 
-/// The points of a line with these corners, its end left out, each with whether it is on the path.
-fn points(places: &[Place], corners: Vec<usize>, tolerance: f32) -> Vec<(Place, bool)> {
-    let sample = |&at: &Place| Sample {
-        at,
-        outward: [0.0; 2],
-        tolerance: [tolerance; 2],
-        weight: 1.0,
-    };
-    let samples: Vec<Sample> = places.iter().map(sample).collect();
-    // 1. Chains between corners. A ring without corners is one chain.
-    let is_ring = corners.is_empty();
-    let cuts: Vec<usize> = match is_ring {
-        true => vec![0, places.len() - 1],
-        false => corners.into_iter().chain([places.len() - 1]).collect(),
-    };
+/// The points after the first place: control points and corners of the runs between neighbouring `cuts`.
+fn runs(places: &[Place], cuts: &[usize], tolerance: f32) -> Vec<PathPoint> {
     let mut points = Vec::new();
-    let mut starts = Vec::new();
     for pair in cuts.windows(2) {
-        starts.push(points.len());
-        let run = &samples[pair[0]..=pair[1]];
-        chain(run, std::iter::empty(), tolerance, &mut points);
+        let run = &places[pair[0]..=pair[1]];
+        points.extend(controls(run, tolerance).into_iter().map(off));
+        points.push(on(run[run.len() - 1]));
     }
-    // 2. Where two spans of a chain meet smoothly, the place between their control points says where.
-    let count = points.len();
-    let is_implied = |&i: &usize| {
-        let [(a, before), (at, _), (b, after)] =
-            [i + count - 1, i, i + 1].map(|k| points[k % count]);
-        let middle = [0, 1].map(|k| 0.5 * (a[k] + b[k]));
-        let is_corner = !is_ring && starts.contains(&i);
-        !is_corner && !before && !after && distance(at, middle) <= tolerance
-    };
-    let is_kept = |i: &usize| !points[*i].1 || !is_implied(i);
-    (0..count).filter(is_kept).map(|i| points[i]).collect()
+    points
 }
+
+/// The fewest control points of a spline from the first to the last place that is nowhere farther than `tolerance`
+/// from the places between.
+fn controls(run: &[Place], tolerance: f32) -> Vec<Place> {
+    if farthest(strays(run, &[run[0], run[run.len() - 1]])) <= tolerance {
+        return Vec::new();
+    }
+    let spline = |shares: &[f32], count: usize| {
+        let found = open_spline(run, shares, count);
+        let away = strays(run, &flattened(run, shares, &found, false));
+        (away, found)
+    };
+    nearest(1..=60, run, false, tolerance, spline)
+}
+
+/// The control points of a smooth ring.
+fn ring(places: &[Place], tolerance: f32) -> Vec<PathPoint> {
+    let spline = |shares: &[f32], count: usize| {
+        let found = closed_spline(places, shares, count);
+        let mut line = flattened(places, shares, &found, true);
+        line.extend(line.first().copied());
+        (strays(places, &line), found)
+    };
+    let controls = nearest(4..=80, places, true, tolerance, spline);
+    controls.into_iter().map(off).collect()
+}
+
+/// The control points of a spline within `tolerance` of the places, or else of the nearest one. They lie evenly along the
+/// places, unless `counts` of them are wild, as in a spiral of many turns: then they lie where it bends.
+fn nearest(
+    counts: RangeInclusive<usize>,
+    places: &[Place],
+    closed: bool,
+    tolerance: f32,
+    spline: impl Fn(&[f32], usize) -> (Vec<f32>, Vec<Place>),
+) -> Vec<Place> {
+    let (first, most) = (*counts.start(), (places.len() / 3).max(*counts.start()));
+    let shares = even(places.len(), closed);
+    let found = fewest(first, most.min(*counts.end()), tolerance, |count| {
+        let (away, points) = spline(&shares, count);
+        (farthest(away), points)
+    });
+    // What misses a little is mended by the fit. Where a score's staff turns into a stem, that is better than a line which does not.
+    if found.0 <= WILD * tolerance || most <= *counts.end() {
+        return found.1;
+    }
+    let shares = by_bends(places, closed);
+    // Of so many places some are out of line. At half the tolerance a spiral takes 20 s and loses 6 dB.
+    let bent = fewest(*counts.end() / 2, most, tolerance, |count| {
+        let (away, points) = spline(&shares, count);
+        (usual(away), points)
+    });
+    match bent.0 <= tolerance {
+        true => bent.1,
+        false => found.1,
+    }
+}
+
+/// A spline that is farther off than so many tolerances is wild: between control points far from each other, it follows nothing. A
+/// guess.
+const WILD: f32 = 16.0;
+
+/// Shares of a spline at which its places lie, 0 to 1, if all are as far from each other.
+fn even(count: usize, closed: bool) -> Vec<f32> {
+    let last = if closed { count } else { count - 1 };
+    (0..count).map(|i| i as f32 / last as f32).collect()
+}
+
+/// Shares of a spline at which its places lie if it has more control points where it bends. A piece of a given tolerance is
+/// as long as the radius of curvature to the power of ¾.
+fn by_bends(places: &[Place], closed: bool) -> Vec<f32> {
+    let count = places.len();
+    let turn = |i: usize| {
+        let beside = match closed {
+            true => [(i + count - BEND) % count, (i + BEND) % count],
+            false => [i.saturating_sub(BEND), (i + BEND).min(count - 1)],
+        };
+        let [a, b] = beside.map(|k| places[k]);
+        let (u, v) = (direction(a, places[i]), direction(places[i], b));
+        // About the angle between both.
+        math::powf(distance(u, v), 0.75)
+    };
+    let turns: Vec<f32> = (0..count).map(turn).collect();
+    let mean = turns.iter().sum::<f32>() / count as f32;
+    // The cumulated density; bends of stairs are noise, so that a part of it is even.
+    let mut sum = 0.0;
+    let mut shares: Vec<f32> = Vec::with_capacity(count);
+    for turn in &turns {
+        shares.push(sum);
+        sum += EVEN * mean + (1.0 - EVEN) * turn;
+    }
+    let all = if closed { sum } else { shares[count - 1] };
+    let all = all.max(f32::MIN_POSITIVE);
+    shares.iter().map(|share| share / all).collect()
+}
+
+/// Places to either side over which a bend is measured. A guess.
+const BEND: usize = 8;
+
+/// Share of the control points that lie evenly along a line, and not where it bends. A guess.
+const EVEN: f32 = 0.3;
+
+/// The first of the splines of `first` to `most` control points that is within `tolerance`, or else the nearest one: how
+/// far it is away, and its control points. `spline` tells both for one of so many.
+fn fewest(
+    first: usize,
+    most: usize,
+    tolerance: f32,
+    spline: impl Fn(usize) -> (f32, Vec<Place>),
+) -> (f32, Vec<Place>) {
+    let mut best = (f32::INFINITY, Vec::new());
+    let mut count = first;
+    loop {
+        let found = spline(count);
+        if found.0 < best.0 {
+            best = found;
+        }
+        if best.0 <= tolerance || count >= most {
+            return best;
+        }
+        // Long lines are tried with a sixth more at a time: a few points too many are removed after the polish.
+        count += 1 + count / 6;
+    }
+}
+
+/// The weights of the control points, and of the two ends, at share `t` of an open spline of `count` control points.
+fn open_weights(count: usize, t: f32) -> Vec<(usize, f32)> {
+    // Point 0 is the start, 1 to `count` are the control points, and `count + 1` is the end.
+    let u = t * count as f32;
+    let piece = (u as usize).min(count - 1);
+    let s = u - piece as f32;
+    let [a, c, b] = [(1.0 - s) * (1.0 - s), 2.0 * s * (1.0 - s), s * s];
+    let k = piece + 1;
+    let mut weights = vec![(k, c)];
+    match piece {
+        0 => weights.push((0, a)),
+        _ => weights.extend([(k - 1, 0.5 * a), (k, 0.5 * a)]),
+    }
+    match piece + 1 == count {
+        true => weights.push((count + 1, b)),
+        false => weights.extend([(k, 0.5 * b), (k + 1, 0.5 * b)]),
+    }
+    weights
+}
+
+/// The weights of a closed spline, whose pieces go from middle to middle of neighbouring control points.
+fn closed_weights(count: usize, t: f32) -> Vec<(usize, f32)> {
+    let u = t * count as f32;
+    let k = (u as usize).min(count - 1);
+    let s = u - k as f32;
+    let [a, c, b] = [(1.0 - s) * (1.0 - s), 2.0 * s * (1.0 - s), s * s];
+    let (before, after) = ((k + count - 1) % count, (k + 1) % count);
+    vec![
+        (before, 0.5 * a),
+        (k, 0.5 * a + c + 0.5 * b),
+        (after, 0.5 * b),
+    ]
+}
+
+/// The control points of an open spline that is nearest to the places of `run`, in least squares.
+fn open_spline(run: &[Place], shares: &[f32], count: usize) -> Vec<Place> {
+    let last = run.len() - 1;
+    let samples = run.iter().zip(shares).map(|(&place, &share)| {
+        let weights = open_weights(count, share);
+        let mut rest = place;
+        let mut free = Vec::new();
+        for (k, w) in weights {
+            match k {
+                0 => rest = [0, 1].map(|axis| rest[axis] - w * run[0][axis]),
+                k if k == count + 1 => rest = [0, 1].map(|axis| rest[axis] - w * run[last][axis]),
+                k => free.push((k - 1, w)),
+            }
+        }
+        (free, rest)
+    });
+    solve(samples, count)
+}
+
+fn closed_spline(places: &[Place], shares: &[f32], count: usize) -> Vec<Place> {
+    let weights = shares.iter().map(|&share| closed_weights(count, share));
+    solve(weights.zip(places.iter().copied()), count)
+}
+
+/// The points whose weighted sums are nearest to the places.
+fn solve(samples: impl Iterator<Item = (Vec<(usize, f32)>, Place)>, count: usize) -> Vec<Place> {
+    let mut equations = Normal::of(count);
+    // A little ridge keeps them solvable where no place depends on a point.
+    for k in 0..count {
+        equations.add(&[(k, 1.0)], [0.0; 2], 1e-6);
+    }
+    for (weights, place) in samples {
+        let terms: Vec<_> = weights.iter().map(|&(k, w)| (k, w.into())).collect();
+        equations.add(&terms, place.map(f64::from), 1.0);
+    }
+    let solution = equations.solve().unwrap_or_default();
+    solution.iter().map(|xy| xy.map(|v| v as f32)).collect()
+}
+
+/// Places along a spline through `controls`, between the ends of `run` or around: two for each place of the run.
+fn flattened(run: &[Place], shares: &[f32], controls: &[Place], closed: bool) -> Vec<Place> {
+    if controls.is_empty() {
+        return vec![run[0], run[run.len() - 1]];
+    }
+    let count = controls.len();
+    let place = |t: f32| {
+        let weights = match closed {
+            true => closed_weights(count, t),
+            false => open_weights(count, t),
+        };
+        let mut place = [0.0; 2];
+        for (k, w) in weights {
+            let point = match (closed, k) {
+                (true, k) => controls[k],
+                (false, 0) => run[0],
+                (false, k) => controls.get(k - 1).copied().unwrap_or(run[run.len() - 1]),
+            };
+            place = [0, 1].map(|axis| place[axis] + w * point[axis]);
+        }
+        place
+    };
+    let end = closed.then_some(1.0);
+    let shares: Vec<f32> = shares.iter().copied().chain(end).collect();
+    let halves = shares.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]);
+    halves.chain(shares.last().copied()).map(place).collect()
+}
+
+/// The squared distance of each place from the part of a polyline beside it. Both have the same parametrisation.
+fn strays(places: &[Place], line: &[Place]) -> Vec<f32> {
+    let (segments, last) = (line.len() - 1, (places.len() - 1).max(1));
+    let away2 = |(i, p): (usize, &Place)| {
+        let middle = i * segments / last;
+        let near = middle.saturating_sub(WINDOW)..(middle + WINDOW).min(segments);
+        let to = |k: usize| nearest_on_segment(*p, [line[k], line[k + 1]]).1;
+        near.map(to).fold(f32::INFINITY, f32::min)
+    };
+    places.iter().enumerate().map(away2).collect()
+}
+
+/// The largest of squared distances, px.
+fn farthest(away2: Vec<f32>) -> f32 {
+    away2.into_iter().fold(0.0, f32::max).sqrt()
+}
+
+/// The largest of squared distances but a fiftieth of them, px.
+fn usual(mut away2: Vec<f32>) -> f32 {
+    let at = away2.len() - 1 - away2.len() / 50;
+    away2.select_nth_unstable_by(at, f32::total_cmp).1.sqrt()
+}
+
+/// Segments to each side in which the nearest one is searched for.
+const WINDOW: usize = 24;
 
 #[cfg(test)]
 mod tests {
@@ -235,7 +486,7 @@ mod tests {
         for p in &places[20..] {
             let away2 = drawn
                 .windows(2)
-                .map(|w| math::nearest_on_segment(*p, [w[0], w[1]]).1);
+                .map(|w| nearest_on_segment(*p, [w[0], w[1]]).1);
             let away = away2.fold(f32::INFINITY, f32::min).sqrt();
             assert!(away < 1.0, "{away} px off at {p:?}");
         }

@@ -24,6 +24,7 @@ mod outline;
 mod overlaps;
 mod regions;
 mod shades;
+mod span;
 mod stack;
 mod translucent;
 

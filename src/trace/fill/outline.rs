@@ -1,18 +1,22 @@
 //! Outlines: a contour as a ring of few on- and off-points.
 //!
-//! A contour is cut at its corners. Between two of them lies the cheapest chain of spans. Hidden edges may lie farther out.
+//! A contour is cut at its corners. Between two of them the cheapest chain of spans within the tolerance is found by
+//! dynamic programme; its spans end at corners of a polygon close to the contour. Hidden edges may lie farther out.
 
 use super::contour::{Field, Place, resampled};
 use super::corners::{Corner, corners};
+use super::span::{MOST, Sample, Span, fit};
 use crate::math;
 use crate::scene::{Path, PathPoint};
-use crate::trace::chain::{Sample, chain};
 
 /// Distance of the samples of an outline, px. A guess.
 const STEP: f32 = 0.5;
 /// Farthest that the outline of an area may be from the samples, px. 0.18, 0.3, 0.5: +0.6, 0, −2.6 dB at 1.16, 1, 0.9 times the
 /// bytes of 64 drawings at 256 px (`docs/areas.md`).
 pub(super) const TOLERANCE: f32 = 0.3;
+/// Tolerance of the polygon whose corners are the candidates for on-points, in units of that of the outline. A guess.
+const POLYGON: f32 = 0.22 / 0.3;
+
 /// The shape that an outline is around, and what hides it.
 pub(super) struct Surroundings<'a, D> {
     /// The size of the picture, px.
@@ -158,9 +162,7 @@ impl Outline {
         let hidden: Vec<bool> = along.map(|i| self.hidden[i]).collect();
         let inner = run.iter().map(|&i| self.samples[i]);
         let samples: Vec<Sample> = start.into_iter().chain(inner).chain(end).collect();
-        let changes = hidden.windows(2).enumerate();
-        let changes = changes.filter(|(_, w)| w[0] != w[1]).map(|(i, _)| i);
-        chain(&samples, changes, self.tolerance, points);
+        chain(&samples, &hidden, self.tolerance, points);
     }
 
     /// The corners of the page that samples outside of it go around.
@@ -268,6 +270,132 @@ fn samples(
         }
     }
     (samples, cuts)
+}
+
+/// The cheapest chain that ends at a candidate: its points, the candidate that its last span starts at, and that span.
+#[derive(Clone, Copy)]
+struct Best {
+    cost: usize,
+    from: usize,
+    span: Span,
+}
+
+/// Appends the points of a run, its last one left out.
+fn chain(run: &[Sample], hidden: &[bool], tolerance: f32, points: &mut Vec<(Place, bool)>) {
+    let candidates = candidates(run, hidden, tolerance);
+    let unreached = Best {
+        cost: usize::MAX,
+        from: 0,
+        span: Span::default(),
+    };
+    let mut best = vec![unreached; candidates.len()];
+    best[0].cost = 0;
+    for a in 0..candidates.len() - 1 {
+        if best[a].cost < usize::MAX {
+            extend(run, &candidates, a, &mut best);
+        }
+    }
+    // Backwards from the end.
+    let mut spans = Vec::new();
+    let mut at = candidates.len() - 1;
+    while at > 0 {
+        spans.push((best[at].from, best[at].span));
+        at = best[at].from;
+    }
+    for (from, span) in spans.into_iter().rev() {
+        points.push((run[candidates[from]].at, true));
+        points.extend(span.off[..span.count].iter().map(|&at| (at, false)));
+    }
+}
+
+/// Tries all spans that start at candidate `a`.
+fn extend(run: &[Sample], candidates: &[usize], a: usize, best: &mut [Best]) {
+    // A longer span needs as many off-points as a shorter one, or more.
+    let mut least = 0;
+    let mut failed = 0;
+    for b in a + 1..candidates.len() {
+        let samples = thinned(&run[candidates[a]..=candidates[b]]);
+        let most = MOST.min(samples.len().saturating_sub(2));
+        let found = (least..=most)
+            .take_while(|count| best[a].cost + 1 + count < best[b].cost)
+            .find_map(|count| {
+                let (span, worst) = fit(&samples, count);
+                (worst <= 1.0).then_some(span)
+            });
+        let is_cheaper = best[a].cost + 1 + least < best[b].cost;
+        match found {
+            Some(span) => {
+                least = span.count.saturating_sub(1);
+                best[b] = Best {
+                    cost: best[a].cost + 1 + span.count,
+                    from: a,
+                    span,
+                };
+                failed = 0;
+            }
+            // The next candidate can always be reached.
+            None if b == a + 1 && best[b].cost == usize::MAX => {
+                best[b] = Best {
+                    cost: best[a].cost + 1,
+                    from: a,
+                    span: Span::default(),
+                };
+            }
+            None if is_cheaper => failed += 1,
+            None => {}
+        }
+        if failed == 3 {
+            return;
+        }
+    }
+}
+
+/// At most some forty of the samples, with both ends.
+fn thinned(run: &[Sample]) -> Vec<Sample> {
+    let stride = run.len().div_ceil(40);
+    let last = run.len() - 1;
+    let inner = (0..last).step_by(stride).map(|i| run[i]);
+    inner.chain([run[last]]).collect()
+}
+
+/// The samples at which spans may end: corners of a polygon near to the run, places where it becomes hidden, and one
+/// in the middle of long gaps.
+fn candidates(run: &[Sample], hidden: &[bool], tolerance: f32) -> Vec<usize> {
+    let mut found = vec![];
+    for factor in [1.0, 2.0, 4.0] {
+        found = polygon(run, factor * POLYGON * tolerance);
+        if found.len() <= 40 {
+            break;
+        }
+    }
+    let gaps = found.windows(2).filter(|w| w[1] - w[0] > 14);
+    let middles: Vec<usize> = gaps.map(|w| (w[0] + w[1]) / 2).collect();
+    let changes = hidden.windows(2).enumerate();
+    let changes = changes.filter(|(_, w)| w[0] != w[1]).map(|(i, _)| i);
+    found.extend(middles.into_iter().chain(changes));
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The indices of the corners of a polygon that is within `tolerance` of the run, after Ramer, Douglas and Peucker.
+fn polygon(run: &[Sample], tolerance: f32) -> Vec<usize> {
+    let last = run.len() - 1;
+    let mut kept = vec![0, last];
+    let mut stack = vec![(0, last)];
+    while let Some((a, b)) = stack.pop() {
+        let ends = [run[a].at, run[b].at];
+        let away2 = |i: usize| math::nearest_on_segment(run[i].at, ends).1;
+        let far = (a + 1..b)
+            .map(|i| (away2(i), i))
+            .max_by(|p, q| p.0.total_cmp(&q.0));
+        if let Some((_, i)) = far.filter(|far| far.0 > tolerance * tolerance) {
+            kept.push(i);
+            stack.extend([(a, i), (i, b)]);
+        }
+    }
+    kept.sort_unstable();
+    kept
 }
 
 /// Makes lines that are nearly level or upright exactly so.
