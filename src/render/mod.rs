@@ -95,7 +95,6 @@ pub use strokes::{
 use crate::coverage::Coverage;
 use crate::rng;
 use crate::threads::PerWorker;
-use edge::Reach;
 use frame::Frame;
 use gradients::add;
 use grid::{FULL, TileWeights, clear_padding, edge_weights};
@@ -255,14 +254,7 @@ impl Renderer {
         out: &mut Canvas,
     ) {
         let frame = Frame::new(self.grid, softness, backdrop);
-        self.bin(strokes, 1, frame.reach);
-        let Self {
-            level,
-            ref polylines,
-            ref mut tiles,
-            ref scratch,
-            ..
-        } = *self;
+        let (tiles, shared) = self.binned(strokes, 1, &frame);
         // Tasks of one tile: tiles differ too much in their number of strokes for longer runs to take equal time.
         let tiles = tiles
             .par_iter_mut()
@@ -271,8 +263,8 @@ impl Renderer {
             .with_max_len(1);
         tiles.for_each(|(tile, (work, out))| {
             // `bin` compared bounding boxes of whole strokes; this drops strokes whose segments all miss the tile.
-            work.list_segments(level, polylines, frame.origin(tile), frame.reach);
-            let job = frame.job(polylines, tile, work, work.weights.as_deref());
+            work.list_segments(tile, &shared);
+            let job = frame.job(shared.polylines, tile, work, work.weights.as_deref());
             if job.listed.is_empty() {
                 // The tile shows the backdrop alone. Its padding becomes 0, as in a tile that the kernel draws.
                 out.clone_from(job.backdrop);
@@ -281,8 +273,8 @@ impl Renderer {
                 }
                 return;
             }
-            scratch.with(|scratch| {
-                kernel::draw(level, &job, scratch);
+            shared.scratch.with(|scratch| {
+                kernel::draw(shared.level, &job, scratch);
                 out.clone_from(scratch.canvas());
             });
         });
@@ -317,16 +309,9 @@ impl Renderer {
             frame: &frame,
             loss,
         };
-        self.bin(strokes, 1, frame.reach);
-        let Self {
-            level,
-            ref polylines,
-            ref mut tiles,
-            ref scratch,
-            ..
-        } = *self;
+        let (tiles, shared) = self.binned(strokes, 1, &frame);
         // A tile that the same strokes reach as before has the loss that it had: after an edit, most of a picture.
-        let fingerprints = polylines.fingerprints();
+        let fingerprints = shared.polylines.fingerprints();
         // A picture behind the strokes doesn't count, as what is kept doesn't outlive it; but it is no colour.
         let color = match backdrop {
             Backdrop::Color(color) => color,
@@ -338,10 +323,7 @@ impl Renderer {
         let losses = tiles.map(|(tile, work)| {
             let strokes = work.listed.iter().map(|listed| listed.stroke as usize);
             let list = strokes.fold(page, |list, i| rng::with(list, fingerprints[i]));
-            let mut judge = || {
-                work.run(level, polylines, tile, &frame, &pass, scratch)
-                    .loss
-            };
+            let mut judge = || work.run(tile, &shared, &pass).loss;
             match loss.kept(tile) {
                 Some(kept) => kept.of(list, judge),
                 None => judge(),
@@ -421,25 +403,19 @@ impl Renderer {
         frame: &Frame<'_>,
         pass: impl BackwardPass,
     ) {
-        self.bin(strokes, least, frame.reach);
-        let Self {
-            level,
-            ref polylines,
-            ref mut tiles,
-            ref scratch,
-            ..
-        } = *self;
-        tiles
-            .par_iter_mut()
-            .enumerate()
-            .with_max_len(1)
-            .for_each(|(tile, work)| {
-                work.total = work.run(level, polylines, tile, frame, &pass, scratch);
-            });
+        let (tiles, shared) = self.binned(strokes, least, frame);
+        let tiles = tiles.par_iter_mut().enumerate().with_max_len(1);
+        tiles.for_each(|(tile, work)| work.total = work.run(tile, &shared, &pass));
     }
 
-    /// Flattens the strokes and lists for each tile those whose bounding box touches it, back to front.
-    fn bin(&mut self, strokes: &Strokes, least: usize, reach: Reach) {
+    /// Flattens the strokes and lists for each tile those whose bounding box touches it, back to front. Returns the tiles, and what
+    /// they share.
+    fn binned<'a>(
+        &'a mut self,
+        strokes: &Strokes,
+        least: usize,
+        frame: &'a Frame<'a>,
+    ) -> (&'a mut [TileWork], Shared<'a>) {
         // Every stroke is flattened once for all tiles.
         self.polylines.fill(strokes, least, self.grid.rows);
         self.least = least;
@@ -456,7 +432,7 @@ impl Renderer {
         {
             // A stroke reaches `radius + soft edge` beyond its centre line, an area (radius 0) the soft edge beyond its contour. A
             // stroke with a number that is not finite has a NaN margin, which touches no tile.
-            let margin = style[0] + reach.outside;
+            let margin = style[0] + frame.reach.outside;
             let [columns, rows] = self.grid.tiles_touched(
                 low[0] - margin,
                 low[1] - margin,
@@ -475,6 +451,13 @@ impl Renderer {
                 }
             }
         }
+        let shared = Shared {
+            level: self.level,
+            polylines: &self.polylines,
+            frame,
+            scratch: &self.scratch,
+        };
+        (&mut self.tiles, shared)
     }
 
     /// Adds the tiles' sums in tile order.
@@ -516,32 +499,40 @@ impl Renderer {
     }
 }
 
+/// What the tiles of a call share.
+struct Shared<'a> {
+    level: Level,
+    polylines: &'a Polylines,
+    frame: &'a Frame<'a>,
+    scratch: &'a PerWorker<Box<Scratch>>,
+}
+
 impl TileWork {
-    /// Lists the segments of the listed strokes that touch the tile at `origin`.
-    fn list_segments(
-        &mut self,
-        level: Level,
-        polylines: &Polylines,
-        origin: [f32; 2],
-        reach: Reach,
-    ) {
+    /// Lists the segments of the listed strokes that touch tile `tile`.
+    fn list_segments(&mut self, tile: usize, shared: &Shared<'_>) {
         let Self {
             listed, segments, ..
         } = self;
-        kernel::list_segments(level, polylines, origin, reach, listed, segments);
+        let (origin, reach) = (shared.frame.origin(tile), shared.frame.reach);
+        kernel::list_segments(
+            shared.level,
+            shared.polylines,
+            origin,
+            reach,
+            listed,
+            segments,
+        );
     }
 
-    /// Runs `pass` on the tile, with the strokes that are listed for it. The sums of its strokes and segments are in `sums`.
-    fn run(
-        &mut self,
-        level: Level,
-        polylines: &Polylines,
-        tile: usize,
-        frame: &Frame<'_>,
-        pass: &impl BackwardPass,
-        scratch: &PerWorker<Box<Scratch>>,
-    ) -> TileSums {
-        self.list_segments(level, polylines, frame.origin(tile), frame.reach);
+    /// Runs `pass` on tile `tile`, with the strokes that are listed for it. The sums of its strokes and segments are in `sums`.
+    fn run(&mut self, tile: usize, shared: &Shared<'_>, pass: &impl BackwardPass) -> TileSums {
+        self.list_segments(tile, shared);
+        let &Shared {
+            level,
+            polylines,
+            frame,
+            scratch,
+        } = shared;
         // `job` borrows the rest of the tile's work during the passes, so the sums move out, with their memory, and back in.
         let mut sums = std::mem::take(&mut self.sums);
         sums.clear();
