@@ -636,6 +636,22 @@ proptest! {
         compare_gradients(&case, tanh, Loss::L2, &mut failures);
         prop_assert!(failures.0.is_empty(), "{}", failures.0.join("\n"));
     }
+
+    /// A stroke is no other when its line is cut in two, or when a tile sees a part of it alone.
+    #[test]
+    fn a_point_on_a_line_changes_no_picture(seed in 0_u64..1 << 40, share in 0.0_f32..1.0) {
+        let whole = random(seed, 60, 50, 1);
+        let stroke = whole.strokes.get(0);
+        let [a, b] = [stroke.points[0], stroke.points[1]];
+        let between = [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
+        let mut cut = whole.clone();
+        cut.strokes = Strokes::new();
+        cut.strokes.push(StrokeRef { points: &[a, between, b], off: &[false; 3], ..stroke });
+        let [whole, cut] = [whole, cut].map(|case| fast_image(&case, Simd::Auto, smoothstep(1.5)));
+        for (x, y) in whole.planes().iter().flatten().zip(cut.planes().iter().flatten()) {
+            prop_assert!((x - y).abs() < 1e-3, "{x} {y}");
+        }
+    }
 }
 
 proptest! {
