@@ -49,7 +49,11 @@ fn stroked(stroke: &Stroke) -> Option<Path> {
                 let (knee_x, knee_y) = to(curve.p1);
                 line.quad_to(knee_x, knee_y, x, y);
             }
-            _ => line.line_to(x, y),
+            PathSeg::Cubic(curve) => {
+                let ((x1, y1), (x2, y2)) = (to(curve.p1), to(curve.p2));
+                line.cubic_to(x1, y1, x2, y2, x, y);
+            }
+            PathSeg::Line(_) => line.line_to(x, y),
         }
     }
     if let [dot] = path.points() {

@@ -3,6 +3,7 @@
 //! Coordinates are in px, with pixel centres at +0.5. Colours are sRGB-encoded, 0..1, and are composited in
 //! that encoding, as SVG renderers do.
 
+mod arc;
 mod band;
 mod canonical;
 mod colors;
@@ -13,11 +14,14 @@ mod likeness;
 mod mark;
 mod overlap;
 mod path;
+mod piece;
 mod polyline;
 mod quantize;
 mod shade;
 mod shape;
 
+pub use arc::Arc;
+pub(crate) use arc::ArcNumbers;
 pub use band::Band;
 pub(crate) use colors::distinct_colors;
 pub use grid::{MAX_PRECISION, MIN_WIDTH};
@@ -26,7 +30,8 @@ pub(crate) use mark::counted;
 pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::{Bundles, Precedence};
 pub(crate) use path::is_inside;
-pub use path::{MAX_POINTS, Path, PathPoint};
+pub use path::{MAX_POINTS, Path};
+pub use piece::{PathPiece, PathPoint, PointKind};
 pub(crate) use polyline::{polyline, through};
 pub(crate) use quantize::quantized_anywhere;
 pub use quantize::{Dropped, Quantized};

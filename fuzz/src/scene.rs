@@ -11,7 +11,7 @@ use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
 use strokefit::math;
 use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Softness, Strokes};
-use strokefit::scene::{Area, Cap, Mark, Path, PathPoint, Quantized, Scene, Stroke};
+use strokefit::scene::{Area, Cap, Mark, Path, PathPoint, PointKind, Quantized, Scene, Stroke};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
 
@@ -80,7 +80,7 @@ impl Source<'_> {
         let kinds = self.byte();
         let between = (0..kinds % 8).map(|i| PathPoint {
             at: math::point([self.float(), self.float()]),
-            is_on: kinds >> (i + 1) & 1 == 1,
+            kind: PointKind::on_if(kinds >> (i + 1) & 1 == 1),
         });
         let points = [start].into_iter().chain(between).chain([end]).collect();
         Path::new(points, closed).expect("an open path has its ends on it")

@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::drawing::Drawing;
 use crate::render::{STYLE, StrokeRef, Strokes};
-use crate::scene::Mark;
+use crate::scene::{Mark, PointKind};
 
 /// The index of marks that come on top of all others.
 pub(super) const TOP: usize = usize::MAX;
@@ -48,7 +48,7 @@ pub(super) enum Change {
     Path {
         index: usize,
         points: Vec<[f32; 2]>,
-        off: Vec<bool>,
+        kinds: Vec<PointKind>,
     },
 }
 
@@ -57,9 +57,9 @@ impl Change {
     fn on<'a>(&'a self, path: StrokeRef<'a>) -> Option<StrokeRef<'a>> {
         match self {
             Self::Marks(_) => None,
-            Self::Path { points, off, .. } => Some(StrokeRef {
+            Self::Path { points, kinds, .. } => Some(StrokeRef {
                 points,
-                off,
+                kinds,
                 form: None,
                 ..path
             }),
@@ -94,12 +94,12 @@ impl Edit {
 /// Most points of a stroke in its file. A curve that turns back is written as a corner, and then the implied points at its
 /// ends are points.
 pub(super) fn written_points(stroke: StrokeRef<'_>) -> usize {
-    let next = stroke.off.iter().cycle().skip(1);
-    let pairs = stroke.off.iter().zip(next);
+    let next = stroke.kinds.iter().cycle().skip(1);
+    let pairs = stroke.kinds.iter().zip(next);
     let last = usize::from(!stroke.closed);
     let implied = pairs
-        .take(stroke.off.len() - last)
-        .filter(|(a, b)| **a && **b);
+        .take(stroke.kinds.len() - last)
+        .filter(|(a, b)| [**a, **b] == [PointKind::Quad; 2]);
     stroke.points.len() + implied.count()
 }
 
@@ -352,14 +352,18 @@ fn push_with_paths(
     start: usize,
     changes: &[&Change],
 ) -> Vec<Option<usize>> {
-    let (mut all_points, mut all_off, mut rings) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut all_points, mut all_kinds, mut rings) = (Vec::new(), Vec::new(), Vec::new());
     let mut sources = Vec::new();
     for (k, (first, path)) in stroke.paths().enumerate() {
         let changed = changes.iter().find_map(|change| match change {
-            Change::Path { index, points, off } if *index == k => Some((&points[..], &off[..])),
+            Change::Path {
+                index,
+                points,
+                kinds,
+            } if *index == k => Some((&points[..], &kinds[..])),
             _ => None,
         });
-        let (points, off) = changed.unwrap_or((path.points, path.off));
+        let (points, kinds) = changed.unwrap_or((path.points, path.kinds));
         let (new, old) = (points.len(), path.points.len());
         let same = points.iter().zip(path.points);
         let before = same.take_while(|(a, b)| a == b).count();
@@ -376,13 +380,13 @@ fn push_with_paths(
             sources.extend([at, at.map(|at| at + 1)]);
         }
         all_points.extend(points);
-        all_off.extend(off);
+        all_kinds.extend(kinds);
         // A ring is stored by the index at which it ends.
         rings.push(all_points.len() as u32);
     }
     strokes.push(StrokeRef {
         points: &all_points,
-        off: &all_off,
+        kinds: &all_kinds,
         rings: if stroke.is_area() { &rings } else { &[] },
         form: None,
         ..stroke
@@ -451,7 +455,7 @@ mod tests {
                 Change::Path {
                     index,
                     points: Vec::new(),
-                    off: Vec::new(),
+                    kinds: Vec::new(),
                 },
             )],
             ..edit(mark, 0.0, 0.0)

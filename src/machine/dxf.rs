@@ -1,16 +1,16 @@
 //! DXF: lines, circles and polylines with arcs in millimetres, on a layer for each colour (AutoCAD 2004).
 //!
-//! Strokes and bands are their centre lines, areas are their rings, circles are circles, and dots are points. Quadratic curves are
-//! pairs of arcs that meet without a corner, as cutters and routers read them; the format has no compound paths and no opacity.
+//! Strokes and bands are their centre lines, areas are their rings, circles are circles, and dots are points. Arcs are arcs, and curves
+//! are pairs of arcs that meet without a corner, as cutters and routers read them; the format has no compound paths and no opacity.
 
 mod arcs;
 mod file;
 
-use kurbo::{ParamCurve, PathSeg, QuadBez};
+use kurbo::QuadBez;
 
 use super::Sheet;
 use crate::math::Point;
-use crate::scene::{Path, Shape, distinct_colors, quantum};
+use crate::scene::{Path, PathPiece, Shape, distinct_colors, quantum};
 use arcs::{DEEPEST, Vertex};
 use file::File;
 
@@ -43,25 +43,35 @@ fn push(file: &mut File, layer: &str, path: &Path, sheet: &Sheet<'_>) {
     if let Some(Shape::Circle { center, radius }) = path.shape() {
         return file.circle(layer, at(center), radius * sheet.mm());
     }
-    let segments: Vec<PathSeg> = path.segments().collect();
+    let pieces: Vec<PathPiece> = path.pieces().collect();
     // Simple entities first: every reader knows lines, circles and points, and an operator can edit them.
-    if let [PathSeg::Line(line)] = segments[..] {
+    if let [PathPiece::Line(line)] = pieces[..] {
         return file.line(layer, at(line.p0), at(line.p1));
     }
     let mut vertices: Vec<Vertex> = Vec::new();
     let mut end = None;
-    for segment in segments {
-        match segment {
-            PathSeg::Quad(curve) => {
-                let curve = QuadBez::new(at(curve.p0), at(curve.p1), at(curve.p2));
-                arcs::push(&mut vertices, curve, TOLERANCE, DEEPEST);
+    for piece in pieces {
+        let mut push_curve = |curve: QuadBez| {
+            let curve = QuadBez::new(at(curve.p0), at(curve.p1), at(curve.p2));
+            arcs::push(&mut vertices, curve, TOLERANCE, DEEPEST);
+        };
+        match piece {
+            PathPiece::Quad(curve) => push_curve(curve),
+            PathPiece::Cubic(curve) => {
+                let quads = curve.to_quads(TOLERANCE / sheet.mm());
+                quads.for_each(|(.., quad)| push_curve(quad));
             }
-            _ => vertices.push(Vertex {
-                at: at(segment.start()),
+            PathPiece::Line(line) => vertices.push(Vertex {
+                at: at(line.p0),
                 bulge: 0.0,
             }),
+            // Seen with y up, what turns clockwise turns to the right.
+            PathPiece::Arc(arc) => vertices.push(Vertex {
+                at: at(arc.from),
+                bulge: -arc.bulge(),
+            }),
         }
-        end = Some(at(segment.end()));
+        end = Some(at(piece.end()));
     }
     // A closed polyline goes back to its first vertex by itself.
     if !path.is_closed() {

@@ -161,7 +161,7 @@ fn ring(path: &BezPath) -> Option<Path> {
             PathEl::MoveTo(p) | PathEl::LineTo(p) => points.push(PathPoint::on(p)),
             PathEl::QuadTo(knee, p) => points.extend([PathPoint::off(knee), PathPoint::on(p)]),
             PathEl::CurveTo(c, d, p) => {
-                // Scenes have quadratic curves alone.
+                // Most of them are parts of quadratic curves.
                 for (_, _, quad) in CubicBez::new(last, c, d, p).to_quads(QUADS) {
                     points.extend([PathPoint::off(quad.p1), PathPoint::on(quad.p2)]);
                 }

@@ -61,6 +61,7 @@
 //!
 //! [`mod@reference`] is the same in naive `f64`, against which all of this is tested.
 
+mod arcs;
 mod crossings;
 mod edge;
 mod frame;

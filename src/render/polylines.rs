@@ -1,17 +1,20 @@
 //! Flattening: paths to polylines, and derivatives by the vertices of polylines to derivatives by points of paths.
 //!
-//! The renderer knows polylines alone. Each line of a path is one segment or more, and each quadratic Bézier curve as
+//! The renderer knows polylines alone. Each line of a path is one segment or more, and each Bézier curve as
 //! many as [`steps`] says, at equal steps of its parameter. So every vertex is a mean, with fixed weights, of the
-//! ends of its piece and the control point between them: flattening is linear, and the derivative by a point is the same
-//! weights times the derivatives by the vertices.
+//! ends of its piece and the control points between them: flattening is linear, and the derivative by a point is the same
+//! weights times the derivatives by the vertices. For circular arcs see [`arcs`].
 
 use rayon::prelude::*;
 
+use super::arcs::{self, Spread};
 use super::crossings::Crossings;
 use super::gradients::add;
 use super::paint::Ink;
 use super::strokes::{STYLE, StrokeRef, Strokes, steps};
+use crate::math;
 use crate::rng;
+use crate::scene::{Arc, PointKind};
 
 /// The vertex between the rings of an area: no segment that has it is drawn.
 const BETWEEN_RINGS: [f32; 2] = [f32::NAN; 2];
@@ -213,11 +216,11 @@ fn hand_back<'a>(
     first.from.hand_back(slopes[0], points);
     let mut at = 1;
     for piece in pieces {
-        let steps = match piece.control {
-            Some(_) => curves.next().map_or(0, |&steps| steps as usize),
-            None => least,
+        let steps = match piece.between {
+            Between::Line => least,
+            _ => curves.next().map_or(0, |&steps| steps as usize),
         };
-        piece.hand_back(&slopes[at..at + steps], points);
+        piece.hand_back(path, &slopes[at..at + steps], points);
         at += steps;
     }
     at
@@ -244,10 +247,10 @@ pub(super) fn flatten(
         }
         for piece in pieces {
             let steps = piece.steps(path, least);
-            if piece.control.is_some() {
+            if piece.between != Between::Line {
                 curves.push(steps as u32);
             }
-            vertices.extend(piece.vertices(path.points, steps));
+            piece.flatten(path, steps, vertices);
         }
     }
 }
@@ -283,70 +286,157 @@ impl Knot {
     }
 }
 
-/// A line, or a curve with one control point, as indices of points.
+/// What lies between the knots of a piece, as indices of points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Between {
+    Line,
+    /// The control point of a quadratic curve.
+    Quad(usize),
+    /// The control points of a cubic curve.
+    Cubic([usize; 2]),
+    /// The point of an arc between its ends.
+    Arc(usize),
+}
+
+/// A line, a curve or an arc, as indices of points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Piece {
     pub(crate) from: Knot,
-    /// The point off the path between the two knots.
-    pub(crate) control: Option<usize>,
+    pub(crate) between: Between,
     pub(crate) to: Knot,
 }
 
 impl Piece {
+    /// The control point of a quadratic curve.
+    pub(crate) fn control(&self) -> Option<usize> {
+        match self.between {
+            Between::Quad(control) => Some(control),
+            _ => None,
+        }
+    }
+
     /// Number of segments that the piece becomes.
     pub(crate) fn steps(&self, stroke: StrokeRef<'_>, least: usize) -> usize {
-        let Some(control) = self.control else {
-            return least;
-        };
         let points = stroke.points;
-        let (a, c, b) = (
-            self.from.place(points),
-            points[control],
-            self.to.place(points),
-        );
-        // The second difference: how far chords are from the curve depends on it and the number of steps alone.
-        let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
-        let bend = (bend[0] * bend[0] + bend[1] * bend[1]).sqrt();
-        steps(f64::from(bend), f64::from(stroke.flatness())).max(least)
-    }
-
-    /// The vertices of the piece behind its start, as one of so many segments.
-    fn vertices(self, points: &[[f32; 2]], steps: usize) -> impl Iterator<Item = [f32; 2]> {
         let (a, b) = (self.from.place(points), self.to.place(points));
-        // The control point of a line has weight 0, so any number does in its place.
-        let c = self.control.map_or(a, |control| points[control]);
-        (1..=steps).map(move |step| {
-            let [of_a, of_c, of_b] = self.weights(step, steps);
-            [0, 1].map(|axis| of_a * a[axis] + of_c * c[axis] + of_b * b[axis])
-        })
+        let within = |bend: f32| steps(f64::from(bend), f64::from(stroke.flatness())).max(least);
+        match self.between {
+            Between::Line => least,
+            // The second difference: how far chords are from the curve depends on it and the number of steps alone.
+            Between::Quad(control) => within(bend([a, points[control], b])),
+            // The second derivative is 2 times the second difference for a quadratic curve. For a cubic one it is at most 6 times
+            // the larger one of both.
+            Between::Cubic([c, d]) => {
+                let [c, d] = [points[c], points[d]];
+                within(3.0 * bend([a, c, d]).max(bend([c, d, b])))
+            }
+            Between::Arc(through) => self
+                .spread(stroke, &self.arc(points, through), least)
+                .map_or(least, |spread| spread.steps),
+        }
     }
 
-    /// The weights of the start, the control point and the end in the vertex after `step` of so many segments.
+    /// The arc with the point `through`.
+    fn arc(&self, points: &[[f32; 2]], through: usize) -> Arc {
+        let [from, through, to] = [
+            self.from.place(points),
+            points[through],
+            self.to.place(points),
+        ]
+        .map(math::point);
+        Arc { from, through, to }
+    }
+
+    fn spread(&self, stroke: StrokeRef<'_>, arc: &Arc, least: usize) -> Option<Spread> {
+        Spread::of(arc, stroke.flatness().into(), least)
+    }
+
+    /// Appends the vertices of the piece behind its start, as one of so many segments.
+    fn flatten(&self, stroke: StrokeRef<'_>, steps: usize, vertices: &mut Vec<[f32; 2]>) {
+        let points = stroke.points;
+        let (a, b) = (self.from.place(points), self.to.place(points));
+        match self.between {
+            Between::Line | Between::Quad(_) => {
+                // The control point of a line has weight 0, so any number does in its place.
+                let c = self.control().map_or(a, |control| points[control]);
+                vertices.extend((1..=steps).map(|step| {
+                    let [of_a, of_c, of_b] = self.weights(step, steps);
+                    [0, 1].map(|axis| of_a * a[axis] + of_c * c[axis] + of_b * b[axis])
+                }));
+            }
+            Between::Cubic([c, d]) => {
+                let corners = [a, points[c], points[d], b];
+                vertices.extend((1..=steps).map(|step| {
+                    let weights = cubic_weights(step, steps);
+                    [0, 1].map(|axis| (0..4).map(|k| weights[k] * corners[k][axis]).sum())
+                }));
+            }
+            Between::Arc(through) => {
+                let arc = self.arc(points, through);
+                match self.spread(stroke, &arc, steps) {
+                    Some(spread) => {
+                        let places = spread.weights().map(|weights| arcs::vertex(&arc, weights));
+                        vertices.extend(places.map(|at| math::xy(at.to_point())));
+                    }
+                    None => Self {
+                        between: Between::Line,
+                        ..*self
+                    }
+                    .flatten(stroke, steps, vertices),
+                }
+            }
+        }
+    }
+
+    /// The weights of the start, the control point and the end in the vertex after `step` of so many segments of a line or a
+    /// quadratic curve.
     fn weights(&self, step: usize, steps: usize) -> [f32; 3] {
         // A line is (1−t)a + tb; a quadratic Bézier curve is (1−t)²a + 2t(1−t)c + t²b.
         let t = step as f32 / steps as f32;
         let s = 1.0 - t;
-        match self.control {
-            None => [s, 0.0, t],
-            Some(_) => [s * s, 2.0 * t * s, t * t],
+        match self.between {
+            Between::Quad(_) => [s * s, 2.0 * t * s, t * t],
+            _ => [s, 0.0, t],
         }
     }
 
     /// Adds the derivatives by the vertices behind the start to those by the points that they depend on.
-    fn hand_back(&self, slopes: &[[f32; 2]], points: &mut [[f32; 2]]) {
-        // The transpose of `vertices`: each vertex gives its derivative to the three points, by the same weights.
-        let mut sums = [[0.0; 2]; 3];
-        for (step, slope) in (1..).zip(slopes) {
-            for (sum, weight) in sums.iter_mut().zip(self.weights(step, slopes.len())) {
-                add(sum, &slope.map(|v| weight * v));
+    fn hand_back(&self, stroke: StrokeRef<'_>, slopes: &[[f32; 2]], points: &mut [[f32; 2]]) {
+        // The transpose of `flatten`: each vertex gives its derivative to the points, by the same weights.
+        let [by_start, by_end] = match self.between {
+            Between::Line | Between::Quad(_) => {
+                let [by_start, by_control, by_end] =
+                    sums(slopes, |step| self.weights(step, slopes.len()));
+                if let Some(control) = self.control() {
+                    add(&mut points[control], &by_control);
+                }
+                [by_start, by_end]
             }
-        }
-        let [by_start, by_control, by_end] = sums;
+            Between::Cubic([c, d]) => {
+                let [by_start, by_first, by_second, by_end] =
+                    sums(slopes, |step| cubic_weights(step, slopes.len()));
+                add(&mut points[c], &by_first);
+                add(&mut points[d], &by_second);
+                [by_start, by_end]
+            }
+            Between::Arc(through) => {
+                let arc = self.arc(stroke.points, through);
+                match self.spread(stroke, &arc, slopes.len()) {
+                    Some(spread) => {
+                        let [by_start, by_through, by_end] = arcs::hand_back(&arc, spread, slopes);
+                        add(&mut points[through], &by_through);
+                        [by_start, by_end]
+                    }
+                    None => {
+                        let [by_start, _, by_end] =
+                            sums(slopes, |step| self.weights(step, slopes.len()));
+                        [by_start, by_end]
+                    }
+                }
+            }
+        };
         self.from.hand_back(by_start, points);
         self.to.hand_back(by_end, points);
-        if let Some(control) = self.control {
-            add(&mut points[control], &by_control);
-        }
     }
 
     /// True if the piece changes with point `k`.
@@ -355,14 +445,43 @@ impl Piece {
             Knot::Point(i) => i == k,
             Knot::Between(i, j) => i == k || j == k,
         };
-        self.control == Some(k) || of(self.from) || of(self.to)
+        let is_between = match self.between {
+            Between::Line => false,
+            Between::Quad(i) | Between::Arc(i) => i == k,
+            Between::Cubic(controls) => controls.contains(&k),
+        };
+        is_between || of(self.from) || of(self.to)
     }
+}
+
+/// The length of the second difference of three points, px.
+fn bend([a, c, b]: [[f32; 2]; 3]) -> f32 {
+    let bend = [0, 1].map(|k| a[k] - 2.0 * c[k] + b[k]);
+    (bend[0] * bend[0] + bend[1] * bend[1]).sqrt()
+}
+
+/// The weights of the four points of a cubic curve in the vertex after `step` of so many segments.
+fn cubic_weights(step: usize, steps: usize) -> [f32; 4] {
+    let t = step as f32 / steps as f32;
+    let s = 1.0 - t;
+    [s * s * s, 3.0 * t * s * s, 3.0 * t * t * s, t * t * t]
+}
+
+/// The derivatives by vertices, times the weights of each of `N` points in the vertex after each step.
+fn sums<const N: usize>(slopes: &[[f32; 2]], weights: impl Fn(usize) -> [f32; N]) -> [[f32; 2]; N] {
+    let mut sums = [[0.0; 2]; N];
+    for (step, slope) in (1..).zip(slopes) {
+        for (sum, weight) in sums.iter_mut().zip(weights(step)) {
+            add(sum, &slope.map(|v| weight * v));
+        }
+    }
+    sums
 }
 
 /// The pieces of a path, in drawing order; none for a dot.
 #[derive(Debug, Clone)]
 pub(crate) struct Pieces<'a> {
-    off: &'a [bool],
+    kinds: &'a [PointKind],
     from: Knot,
     /// The index of the next point; a closed path goes on from 0 beyond its last point.
     next: usize,
@@ -372,9 +491,9 @@ pub(crate) struct Pieces<'a> {
 impl<'a> Pieces<'a> {
     /// The pieces of `stroke`.
     pub(crate) fn of(stroke: StrokeRef<'a>) -> Self {
-        let (off, count) = (stroke.off, stroke.off.len());
+        let (kinds, count) = (stroke.kinds, stroke.kinds.len());
         // A closed path may start anywhere: it starts at its first point that is on it.
-        let first = off.iter().position(|off| !off);
+        let first = kinds.iter().position(|kind| *kind == PointKind::On);
         // All points of a closed path may be off: it starts halfway between the last one and the first.
         let (from, next) = match first {
             Some(first) => (Knot::Point(first), first + 1),
@@ -386,7 +505,7 @@ impl<'a> Pieces<'a> {
             (_, false) => count,
         };
         Self {
-            off,
+            kinds,
             from,
             next,
             end,
@@ -401,26 +520,35 @@ impl Iterator for Pieces<'_> {
         if self.next >= self.end {
             return None;
         }
-        let (count, from) = (self.off.len(), self.from);
-        // Ends of an open path are on it, so only a closed path wraps around.
-        let point = self.next % count;
-        self.next += 1;
-        // A point on the path ends a line. A point off it is the control point of a curve, which ends halfway to the next point if
-        // that is off as well, else at that point.
-        let control = self.off[point].then_some(point);
-        self.from = match control {
-            None => Knot::Point(point),
-            Some(_) if self.off[self.next % count] => Knot::Between(point, self.next % count),
-            Some(_) => {
-                self.next += 1;
-                Knot::Point((self.next - 1) % count)
-            }
+        let from = self.from;
+        let point = self.pass();
+        // A point on the path ends a line. The control point of a quadratic curve is followed by another one, and then the curve
+        // ends halfway between them, or by the point that the curve ends at; the points of cubic curves and arcs by their ends.
+        let between = match self.kinds[point] {
+            PointKind::On => Between::Line,
+            PointKind::Quad => Between::Quad(point),
+            PointKind::Cubic => Between::Cubic([point, self.pass()]),
+            PointKind::Arc => Between::Arc(point),
+        };
+        let next = self.next % self.kinds.len();
+        self.from = match between {
+            Between::Line => Knot::Point(point),
+            Between::Quad(_) if self.kinds[next] == PointKind::Quad => Knot::Between(point, next),
+            _ => Knot::Point(self.pass()),
         };
         Some(Piece {
             from,
-            control,
+            between,
             to: self.from,
         })
+    }
+}
+
+impl Pieces<'_> {
+    /// The index of the next point, which is passed. Ends of an open path are on it, so only a closed path wraps around.
+    fn pass(&mut self) -> usize {
+        self.next += 1;
+        (self.next - 1) % self.kinds.len()
     }
 }
 
@@ -428,45 +556,65 @@ impl Iterator for Pieces<'_> {
 mod tests {
     use super::super::reference;
     use super::*;
+    use crate::math::Vec2;
     use crate::rng;
 
-    /// Strokes of one to six points of all kinds, open and closed.
+    /// Strokes of one to six points of lines and quadratic curves, open and closed, and some with all kinds of pieces.
     fn strokes() -> Strokes {
+        use PointKind::{Arc, Cubic, On, Quad};
         let mut strokes = Strokes::new();
+        let mut push = |kinds: &[PointKind], closed: bool| {
+            let seed = strokes.len() as u64;
+            let place = |k: u64| [0, 1].map(|axis| 90.0 * rng::draw(axis, seed, k, 0));
+            let points: Vec<[f32; 2]> = (0..kinds.len() as u64).map(place).collect();
+            strokes.push(StrokeRef {
+                points: &points,
+                kinds,
+                closed,
+                rings: &[],
+                form: None,
+                paint: None,
+                style: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][strokes.len() % 3]],
+            });
+        };
         for count in 1..7_u32 {
             for (kinds, closed) in (0..1_u32 << count).flat_map(|k| [(k, false), (k, true)]) {
                 let is_end = |k: u32| (!closed || count == 1) && (k == 0 || k == count - 1);
-                let off: Vec<bool> = (0..count)
-                    .map(|k| kinds >> k & 1 == 1 && !is_end(k))
-                    .collect();
-                let place = |k: u32| {
-                    [0, 1].map(|axis| 90.0 * rng::draw(axis, u64::from(kinds), u64::from(k), 0))
-                };
-                let points: Vec<[f32; 2]> = (0..count).map(place).collect();
-                strokes.push(StrokeRef {
-                    points: &points,
-                    off: &off,
-                    closed,
-                    rings: &[],
-                    form: None,
-                    paint: None,
-                    style: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][kinds as usize % 3]],
-                });
+                let is_on = |k: u32| kinds >> k & 1 == 0 || is_end(k);
+                let kinds: Vec<PointKind> =
+                    (0..count).map(|k| PointKind::on_if(is_on(k))).collect();
+                push(&kinds, closed);
             }
+        }
+        for _ in 0..20 {
+            push(&[On, Arc, On], false);
+            push(&[On, Cubic, Cubic, On], false);
+            push(&[On, Arc, On, Quad, On, Cubic, Cubic, On, On], false);
+            push(&[On, Arc, On, Arc], true);
+            push(&[On, Cubic, Cubic], true);
+            push(&[Arc, On, Quad, Quad, On, Cubic, Cubic, On], true);
+            push(&[Cubic, On, On, Arc, On, Cubic], true);
         }
         strokes
     }
 
-    /// Derivatives that each vertex hands back to each point, equal for x and y: the weight of the point in the vertex.
-    fn weights(polylines: &Polylines, i: usize, stroke: StrokeRef<'_>) -> Vec<Vec<f32>> {
+    /// Derivatives that each vertex hands back to each point, complex numbers; of curves the weight of the point in the vertex.
+    fn weights(polylines: &Polylines, i: usize, stroke: StrokeRef<'_>) -> Vec<Vec<Vec2>> {
         let count = (polylines.firsts[i + 1] - polylines.firsts[i]) as usize;
         let weights = |vertex: usize| {
-            let mut slopes = vec![[0.0; 2]; count];
-            slopes[vertex] = [1.0, -2.0];
-            let mut points = vec![[0.0; 2]; stroke.points.len()];
-            polylines.hand_back(i, stroke, 1, &slopes, &mut points);
-            points.iter().for_each(|[x, y]| assert_eq!(-2.0 * x, *y));
-            points.iter().map(|point| point[0]).collect()
+            let by = |slope: [f32; 2]| {
+                let mut slopes = vec![[0.0; 2]; count];
+                slopes[vertex] = slope;
+                let mut points = vec![[0.0; 2]; stroke.points.len()];
+                polylines.hand_back(i, stroke, 1, &slopes, &mut points);
+                points
+            };
+            let (by_x, by_y) = (by([1.0, 0.0]), by([0.0, 1.0]));
+            let weight = |(x, y): (&[f32; 2], &[f32; 2])| {
+                assert_eq!((x[0], -x[1]), (y[1], y[0]), "{stroke:?}");
+                Vec2::new(x[0].into(), (-x[1]).into())
+            };
+            by_x.iter().zip(&by_y).map(weight).collect()
         };
         (0..count).map(weights).collect()
     }
@@ -485,13 +633,16 @@ mod tests {
             let means = reference::Stroke::from(stroke).outline().means;
             assert_eq!(weights.len(), means.len(), "{stroke:?}");
             for (got, mean) in weights.iter().zip(means) {
-                let mut expected = vec![0.0; count];
+                let mut expected = vec![Vec2::ZERO; count];
                 for (k, weight) in mean.0 {
-                    expected[k] += weight as f32;
+                    expected[k] += weight;
                 }
-                let apart = got.iter().zip(&expected).map(|(g, e)| (g - e).abs());
+                let apart = got
+                    .iter()
+                    .zip(&expected)
+                    .map(|(g, e)| (*g - *e).hypot() / (1.0 + e.hypot()));
                 assert!(
-                    apart.fold(0.0, f32::max) < 1e-6,
+                    apart.fold(0.0, f64::max) < 1e-6,
                     "{stroke:?}: {got:?} {expected:?}"
                 );
             }
@@ -505,11 +656,15 @@ mod tests {
         for (i, stroke) in strokes.iter().enumerate() {
             let vertices = &polylines.vertices[polylines.firsts[i] as usize..];
             for (vertex, weights) in vertices.iter().zip(weights(&polylines, i, stroke)) {
-                for axis in [0, 1] {
-                    let terms = weights.iter().zip(stroke.points);
-                    let mean: f32 = terms.map(|(w, p)| w * p[axis]).sum();
-                    assert!((vertex[axis] - mean).abs() < 1e-4, "{stroke:?}");
-                }
+                // Where weights turn, they are products of complex numbers; arcs that grow with their points have this sum, too.
+                let terms = weights.iter().zip(stroke.points);
+                let mean = terms.fold(Vec2::ZERO, |sum, (w, p)| {
+                    let p = math::point(*p).to_vec2();
+                    sum + p * w.x + p.turn_90() * w.y
+                });
+                let size = weights.iter().map(|w| w.hypot()).sum::<f64>();
+                let away = (math::point(*vertex).to_vec2() - mean).hypot();
+                assert!(away < 1e-4 * size, "{stroke:?}");
             }
         }
     }
@@ -519,7 +674,7 @@ mod tests {
         let segments = |opacity: f32| {
             let hook = StrokeRef {
                 points: &[[0.0, 0.0], [40.0, 0.0], [40.0, 40.0]],
-                off: &[false, true, false],
+                kinds: &[PointKind::On, PointKind::Quad, PointKind::On],
                 closed: false,
                 rings: &[],
                 form: None,

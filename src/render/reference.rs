@@ -304,6 +304,7 @@ fn add<const N: usize>(sum: &mut [f64; N], weight: f64, x: [f64; N]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::PointKind;
 
     const RED: Rgb = [1.0, 0.0, 0.0];
 
@@ -319,7 +320,7 @@ mod tests {
     fn red(opacity: f64) -> Stroke {
         Stroke {
             points: vec![[0.5, 0.5]],
-            off: vec![false],
+            kinds: vec![PointKind::On],
             closed: false,
             rings: Vec::new(),
             radius: 5.0,

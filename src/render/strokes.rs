@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::paint::Paint;
 use crate::math;
-use crate::scene::{Area, Band, Cap, Mark, Path, PathPoint, Rgb, ShapeKind, Stroke};
+use crate::scene::{Area, Band, Cap, Mark, Path, PathPoint, PointKind, Rgb, ShapeKind, Stroke};
 
 /// Numbers of a capsule, in the order of the constants below.
 pub const PARAMS: usize = 9;
@@ -32,18 +32,23 @@ pub(super) fn flatness(opacity: f32) -> f32 {
     (0.08 / (opacity * opacity)).min(0.5)
 }
 
-/// Most segments of one curve, so that one of more than some 1,300 px may be off by more.
-const MAX_STEPS: usize = 64;
+/// Most segments of one curve, so that one of more than some 1,300 px may be off by more. An arc has as many for each quarter.
+pub(super) const MAX_STEPS: usize = 64;
 
 /// Number of segments that keep within `flatness` of a quadratic curve, px, from the length of its second difference `a − 2b + c`.
 ///
 /// A curve is at most a quarter of that from its chord, and each halving of the step quarters the distance. The hair that
 /// is taken off keeps curves in round numbers, whose ratio is a whole number, from hanging on rounding.
 pub(super) fn steps(bend: f64, flatness: f64) -> usize {
+    steps_at_most(MAX_STEPS, bend, flatness)
+}
+
+/// As [`steps`], with another limit.
+pub(super) fn steps_at_most(most: usize, bend: f64, flatness: f64) -> usize {
     let steps = (bend / (4.0 * flatness)).sqrt() - 1e-3;
     // `ceil` is a call where the target has no instruction for it.
     let whole = steps as usize;
-    (whole + usize::from(steps > whole as f64)).clamp(1, MAX_STEPS)
+    (whole + usize::from(steps > whole as f64)).clamp(1, most)
 }
 
 /// The numbers of a capsule: the strokes that seeding proposes.
@@ -59,8 +64,8 @@ pub const STYLE: usize = 5;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strokes {
     numbers: Vec<f32>,
-    /// For each point of all strokes, true if it is off its path.
-    off: Vec<bool>,
+    /// The kinds of the points of all strokes.
+    kinds: Vec<PointKind>,
     /// The rings of all areas: each by the index behind its last point, counted from the first point of its area.
     rings: Vec<u32>,
     /// The gradients of the areas that have one.
@@ -95,8 +100,8 @@ pub enum Form {
 pub struct StrokeRef<'a> {
     /// The points of its path, px.
     pub points: &'a [[f32; 2]],
-    /// For each point, true if it is off the path.
-    pub off: &'a [bool],
+    /// The kind of each point.
+    pub kinds: &'a [PointKind],
     /// True if the last point is joined to the first.
     pub closed: bool,
     /// For an area, the index behind the last point of each of its rings; none for a stroke.
@@ -135,7 +140,7 @@ impl<'a> StrokeRef<'a> {
         let path = move |(start, end): (usize, usize)| {
             let path = StrokeRef {
                 points: &whole.points[start..end],
-                off: &whole.off[start..end],
+                kinds: &whole.kinds[start..end],
                 closed: whole.closed || whole.is_area(),
                 rings: &[],
                 ..whole
@@ -180,7 +185,13 @@ impl<'a> StrokeRef<'a> {
 
     /// True if the path has no curve.
     pub fn is_straight(&self) -> bool {
-        !self.off.contains(&true)
+        self.kinds.iter().all(|kind| *kind == PointKind::On)
+    }
+
+    /// True if the path has cubic curves or arcs.
+    pub fn is_mixed(&self) -> bool {
+        let is_other = |kind: &PointKind| matches!(kind, PointKind::Cubic | PointKind::Arc);
+        self.kinds.iter().any(is_other)
     }
 
     /// True if every number is finite.
@@ -194,7 +205,7 @@ impl<'a> StrokeRef<'a> {
     /// The band whose rings the points are, if they are such.
     pub fn band(&self) -> Option<Band> {
         let is_closed = self.rings.len() > 1;
-        let near = || Band::near(self.points, self.off, is_closed);
+        let near = || Band::near(self.points, self.kinds, is_closed);
         (self.form == Some(Form::Band)).then(near)?
     }
 
@@ -239,10 +250,10 @@ impl<'a> StrokeRef<'a> {
         {
             return shape.path();
         }
-        let points = self.points.iter().zip(self.off);
-        let points = points.map(|(&at, &is_off)| PathPoint {
+        let points = self.points.iter().zip(self.kinds);
+        let points = points.map(|(&at, &kind)| PathPoint {
             at: math::point(at),
-            is_on: !is_off,
+            kind,
         });
         Path::of_points(points.collect(), self.closed)
     }
@@ -278,7 +289,7 @@ impl Strokes {
 
     /// Number of points, of all strokes together.
     pub fn points(&self) -> usize {
-        self.off.len()
+        self.kinds.len()
     }
 
     /// All numbers, stroke after stroke.
@@ -333,7 +344,7 @@ impl Strokes {
             .unwrap_or((&[], &NO_STYLE));
         StrokeRef {
             points: points.as_chunks().0,
-            off: &self.off[self.first_point(i)..end as usize],
+            kinds: &self.kinds[self.first_point(i)..end as usize],
             closed,
             rings: &self.rings[self.first_ring(i)..rings_end as usize],
             form,
@@ -378,11 +389,11 @@ impl Strokes {
     pub fn push(&mut self, stroke: StrokeRef<'_>) {
         self.numbers.extend(stroke.points.as_flattened());
         self.numbers.extend(stroke.style);
-        self.off.extend(stroke.off);
+        self.kinds.extend(stroke.kinds);
         self.rings.extend(stroke.rings);
         self.paints.extend(stroke.paint.cloned());
         self.outlines.push(Outline {
-            end: self.off.len() as u32,
+            end: self.kinds.len() as u32,
             rings_end: self.rings.len() as u32,
             paints_end: self.paints.len() as u32,
             closed: stroke.closed,
@@ -395,7 +406,7 @@ impl Strokes {
         if let Some((points, style)) = capsule.split_last_chunk() {
             self.push(StrokeRef {
                 points: points.as_chunks().0,
-                off: &[false; 2],
+                kinds: &[PointKind::On; 2],
                 closed: false,
                 rings: &[],
                 form: None,
@@ -450,10 +461,10 @@ impl Strokes {
     ) {
         let points = || paths.iter().flat_map(Path::points);
         let places: Vec<[f32; 2]> = points().map(|p| math::xy(p.at)).collect();
-        let off: Vec<bool> = points().map(|p| !p.is_on).collect();
+        let kinds: Vec<PointKind> = points().map(|p| p.kind).collect();
         self.push(StrokeRef {
             points: &places,
-            off: &off,
+            kinds: &kinds,
             closed: paths.first().is_some_and(Path::is_closed),
             rings,
             form,
@@ -464,10 +475,10 @@ impl Strokes {
 
     /// Adds all of `others` on top, and leaves none there.
     pub fn append(&mut self, others: &mut Self) {
-        let (points, rings) = (self.off.len() as u32, self.rings.len() as u32);
+        let (points, rings) = (self.kinds.len() as u32, self.rings.len() as u32);
         let paints = self.paints.len() as u32;
         self.numbers.append(&mut others.numbers);
-        self.off.append(&mut others.off);
+        self.kinds.append(&mut others.kinds);
         self.rings.append(&mut others.rings);
         self.paints.append(&mut others.paints);
         // Indices of `others` count from their own start.
@@ -490,7 +501,7 @@ impl Strokes {
         let outlines = self.outlines.split_off(at).into_iter();
         Self {
             numbers: self.numbers.split_off(2 * first + STYLE * at),
-            off: self.off.split_off(first),
+            kinds: self.kinds.split_off(first),
             rings: self.rings.split_off(first_ring),
             paints: self.paints.split_off(first_paint),
             outlines: outlines

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::math;
-use crate::scene::{Area, Mark, Path, PathPoint, Rgb, Scene, Shade, ShadeStop};
+use crate::scene::{Area, Mark, Path, PathPoint, PointKind, Rgb, Scene, Shade, ShadeStop};
 
 /// A scene in numbers and colours that a page can hand to a canvas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -99,7 +99,12 @@ fn shadow(area: &Area) -> (MarkRecord, f32) {
 }
 
 fn kinds(path: &Path) -> String {
-    let kind = |p: &PathPoint| if p.is_on { 'o' } else { 'c' };
+    let kind = |p: &PathPoint| match p.kind {
+        PointKind::On => 'o',
+        PointKind::Quad => 'c',
+        PointKind::Cubic => 'b',
+        PointKind::Arc => 'a',
+    };
     let end = path.is_closed().then_some('z');
     path.points().iter().map(kind).chain(end).collect()
 }
@@ -140,7 +145,7 @@ mod tests {
         let ring = |points: &[([f64; 2], bool)]| {
             let point = |&([x, y], is_on): &([f64; 2], bool)| PathPoint {
                 at: Point::new(x, y),
-                is_on,
+                kind: PointKind::on_if(is_on),
             };
             Path::new(points.iter().map(point).collect(), true).unwrap()
         };

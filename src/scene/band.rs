@@ -5,7 +5,8 @@
 //! control polygon meet. So the points of the rings depend on those of the line, and on the width.
 
 use super::grid::MIN_WIDTH;
-use super::path::{Path, PathPoint};
+use super::path::Path;
+use super::piece::{PathPoint, PointKind};
 use super::polyline::{CLEAR, Turn, directions, polyline, turns};
 use super::shape::EXACT;
 use super::{Area, Cap, Mark, Stroke};
@@ -28,6 +29,9 @@ const SHARPEST: f64 = 0.13;
 /// Cosine of the sharpest turn at a control point: the sides of sharper curves are no parabolas.
 const SHARPEST_CURVE: f64 = 0.5;
 
+/// Farthest that quadratic curves are from the cubic curves and arcs of a line that they stand for, px.
+const BESIDE_LINE: f64 = 0.02;
+
 /// A rectangle is a line, px: at most so wide, and at least so many times as long.
 const THIN_PX: f64 = 6.0;
 const SLENDER: f64 = 2.0;
@@ -41,7 +45,7 @@ impl Band {
         let beside = |sign: f64| {
             let moved = points.iter().zip(&sides).map(move |(p, side)| PathPoint {
                 at: p.at + 0.5 * sign * self.width * *side,
-                is_on: p.is_on,
+                kind: p.kind,
             });
             moved.collect::<Vec<_>>()
         };
@@ -113,7 +117,7 @@ impl Band {
     /// True if its ends or some of its corners show that it is no stroke.
     pub(crate) fn is_told(&self) -> bool {
         let points = self.line.points();
-        let is_clear = |(p, turn): (&PathPoint, &Turn)| p.is_on && turn.cosine < CLEAR;
+        let is_clear = |(p, turn): (&PathPoint, &Turn)| p.is_on() && turn.cosine < CLEAR;
         let has_corner = || {
             points
                 .iter()
@@ -160,7 +164,7 @@ impl Band {
         };
         let half = 0.5 * self.width;
         let count = points.len();
-        let is_turn = |(p, turn): (&PathPoint, &Turn)| match p.is_on {
+        let is_turn = |(p, turn): (&PathPoint, &Turn)| match p.is_on() {
             true => 1.0 + turn.cosine >= SHARPEST,
             false => turn.cosine >= SHARPEST_CURVE,
         };
@@ -179,11 +183,11 @@ impl Band {
             && (0..legs).all(has_room)
     }
 
-    /// The band whose rings have points near to these, which are on or off its line as `off` says.
-    pub(crate) fn near(places: &[[f32; 2]], off: &[bool], is_closed: bool) -> Option<Self> {
-        let points = places.iter().zip(off).map(|(&at, is_off)| PathPoint {
+    /// The band whose rings have points near to these, of these kinds.
+    pub(crate) fn near(places: &[[f32; 2]], kinds: &[PointKind], is_closed: bool) -> Option<Self> {
+        let points = places.iter().zip(kinds).map(|(&at, &kind)| PathPoint {
             at: math::point(at),
-            is_on: !is_off,
+            kind,
         });
         between(&points.collect::<Vec<_>>(), is_closed)
     }
@@ -227,9 +231,9 @@ impl Band {
             }
             _ => return None,
         };
-        let is_paired = (0..half).all(|i| points[i].is_on == points[points.len() - 1 - i].is_on);
+        let is_paired = (0..half).all(|i| points[i].kind == points[points.len() - 1 - i].kind);
         let has_ends =
-            is_closed || points.first()?.is_on && points.get(half.checked_sub(1)?)?.is_on;
+            is_closed || points.first()?.is_on() && points.get(half.checked_sub(1)?)?.is_on();
         let is_even = points.len().is_multiple_of(2) && half >= if is_closed { 3 } else { 2 };
         (is_even && is_paired && has_ends).then(|| between(points, is_closed))?
     }
@@ -247,8 +251,9 @@ impl Band {
 impl Stroke {
     /// The line with square ends that it is, if it is one.
     pub(crate) fn band(&self) -> Option<Band> {
+        // The sides of other curves are found from quadratic ones.
         let band = || Band {
-            line: self.path.clone(),
+            line: self.path.quadratic(BESIDE_LINE),
             width: 2.0 * self.radius,
         };
         (self.cap == Cap::Butt).then(band)
@@ -359,7 +364,7 @@ fn between(points: &[PathPoint], is_closed: bool) -> Option<Band> {
     let pair = |i: usize| [points[i].at, points[points.len() - 1 - i].at];
     let middle = |i: usize| PathPoint {
         at: pair(i)[0].midpoint(pair(i)[1]),
-        is_on: points[i].is_on,
+        kind: points[i].kind,
     };
     let line: Vec<PathPoint> = (0..half).map(middle).collect();
     let width = width(&sides(&line, is_closed)?, pair);
@@ -389,7 +394,7 @@ mod tests {
     fn line(points: &[([f64; 2], bool)], closed: bool) -> Path {
         let point = |&([x, y], is_on): &([f64; 2], bool)| PathPoint {
             at: Point::new(x, y),
-            is_on,
+            kind: PointKind::on_if(is_on),
         };
         Path::new(points.iter().map(point).collect(), closed).unwrap()
     }
@@ -440,24 +445,24 @@ mod tests {
     }
 
     /// The points of a band's rings as a descent has them.
-    fn points(band: &Band) -> (Vec<[f32; 2]>, Vec<bool>) {
+    fn points(band: &Band) -> (Vec<[f32; 2]>, Vec<PointKind>) {
         let rings = band.rings();
         let points = rings.iter().flat_map(Path::points);
-        points.map(|p| (math::xy(p.at), !p.is_on)).unzip()
+        points.map(|p| (math::xy(p.at), p.kind)).unzip()
     }
 
     #[test]
     fn moved_points_are_those_of_a_band_near_to_it() {
         for band in bands() {
-            let (mut places, off) = points(&band);
+            let (mut places, kinds) = points(&band);
             for (i, place) in places.iter_mut().enumerate() {
                 let (sin, cos) = math::sin_cos(2.0 * i as f32);
                 *place = [place[0] + 0.1 * sin, place[1] + 0.1 * cos];
             }
-            let near = Band::near(&places, &off, band.line.is_closed()).unwrap();
+            let near = Band::near(&places, &kinds, band.line.is_closed()).unwrap();
             assert!((near.width - band.width).abs() < 0.2, "{near:?}");
             near.put(&mut places);
-            let again = Band::near(&places, &off, band.line.is_closed()).unwrap();
+            let again = Band::near(&places, &kinds, band.line.is_closed()).unwrap();
             let pairs = again.line.points().iter().zip(near.line.points());
             assert!(pairs.into_iter().all(|(a, b)| (a.at - b.at).hypot() < 1e-4));
             assert!((again.width - near.width).abs() < 1e-4);

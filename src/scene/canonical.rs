@@ -4,21 +4,34 @@
 //! a multiple of its grid, and none of the numbers in the file is rounded. The path is in canonical form: of all lists
 //! of points with its segments it is one that no rule makes shorter, so that reading gives the points that were written.
 
-use kurbo::{ParamCurve, PathSeg, QuadBez};
+use kurbo::{CubicBez, ParamCurve, QuadBez};
 
+use super::arc::{Arc, Rounded};
 use super::grid::{Grid, px, units};
-use super::path::{Path, PathPoint};
+use super::path::Path;
+use super::piece::{PathPiece, PathPoint, PointKind};
 use crate::math::Point;
 
 impl Path {
-    /// The path in canonical form. Each on-point that lies exactly halfway between two off-points becomes an implied one.
-    /// All coordinates are multiples of a unit.
+    /// The path in canonical form. Each on-point that lies exactly halfway between two quadratic control points becomes an
+    /// implied one, and a curve or an arc that is a line becomes one. All coordinates are multiples of a unit but those of arcs:
+    /// the point of an arc is the one that [`Arc::of_numbers`] gives.
     pub(crate) fn canonical(points: Vec<PathPoint>, closed: bool) -> Self {
+        let given = Self::of_points(points, closed);
+        // Arcs while their three points are all in px; below they are taken along.
+        let is_flat = |piece: &PathPiece| matches!(piece, PathPiece::Arc(arc) if arc.is_line());
+        let points = given
+            .without_between(is_flat)
+            .unwrap_or(given)
+            .into_points();
         // Whole numbers of units are exact, and so are their sums.
         let scaled = |points: &[PathPoint], f: fn(f64) -> f64| -> Vec<PathPoint> {
-            let point = |p: &PathPoint| PathPoint {
-                at: Point::new(f(p.at.x), f(p.at.y)),
-                ..*p
+            let point = |p: &PathPoint| match p.kind {
+                PointKind::Arc => *p,
+                kind => PathPoint {
+                    at: Point::new(f(p.at.x), f(p.at.y)),
+                    kind,
+                },
             };
             points.iter().map(point).collect()
         };
@@ -30,17 +43,18 @@ impl Path {
         Self::of_points(scaled(&path.points, |units| px(units as i64)), path.closed)
     }
 
-    /// The path with its points on the `grid`. An off-point may be one step of the grid away from where it was, so that
-    /// implied on-points are on the grid, too.
+    /// The path with its points on the `grid`. The control point of a quadratic curve may be one step of the grid away from where
+    /// it was, so that implied on-points are on the grid, too; and arcs become what a file has for them, as [`Arc::rounded`] says.
     pub(super) fn rounded(&self, grid: &Grid) -> Self {
         let mut points = self.points().to_vec();
-        let first_on = points.iter().position(|p| p.is_on);
+        let first_on = points.iter().position(PathPoint::is_on);
         // Begin with an on-point, which is rounded by itself, so that each run of off-points starts from the grid.
         points.rotate_left(first_on.unwrap_or(0));
+        let given = points.clone();
         let mut last: Option<PathPoint> = None;
         for point in &mut points {
             point.at = match last {
-                Some(last) if !last.is_on && !point.is_on => {
+                Some(last) if last.is_quad() && point.is_quad() => {
                     // The implied point m goes to the grid, and the off-point to 2m − last. So neighbouring off-points are
                     // an even number of steps apart, and a ring of off-points alone closes on the grid, too.
                     let halfway = grid.point(last.at.midpoint(point.at));
@@ -50,26 +64,42 @@ impl Path {
             };
             last = Some(*point);
         }
+        if self.is_mixed() {
+            points = with_arcs(&given, &points, grid);
+        }
         Self::canonical(points, self.is_closed()).with_corners_for_cusps(grid)
     }
 
-    /// The path with a corner on the `grid` where a curve bends more sharply than all programs can draw it.
+    /// The path with a corner on the `grid` where a quadratic curve bends more sharply than all programs can draw it. Cubic curves
+    /// stay as they are.
     fn with_corners_for_cusps(self, grid: &Grid) -> Self {
-        let corner = |segment: &PathSeg| match segment {
-            PathSeg::Quad(curve) => cusp(curve),
+        let corner = |piece: &PathPiece| match piece {
+            PathPiece::Quad(curve) => cusp(curve),
             _ => None,
         };
-        if !self.segments().any(|segment| corner(&segment).is_some()) {
+        if !self.pieces().any(|piece| corner(&piece).is_some()) {
             return self;
         }
         // The bend becomes an on-point and the curve two lines. At an end it's the end itself, and one line is left.
-        let points = replaced(&self, |segment| match (segment, corner(&segment)) {
-            (_, Some(corner)) => Some(PathPoint::on(grid.point(corner))),
-            (PathSeg::Quad(curve), None) => Some(PathPoint::off(curve.p1)),
-            _ => None,
+        let points = replaced(&self, |piece| match corner(piece) {
+            Some(corner) => vec![PathPoint::on(grid.point(corner))],
+            None => piece.between().collect(),
         });
         // Curves that were smooth together stay so; each round leaves fewer of them.
         Self::canonical(points, self.is_closed()).with_corners_for_cusps(grid)
+    }
+
+    /// The path with lines in the place of the pieces for which `is_line` says so; `None` if there is none.
+    fn without_between(&self, is_line: impl Fn(&PathPiece) -> bool) -> Option<Self> {
+        // All on-points are written out first: without its control point, a curve would take its implied ends along.
+        let lines = || {
+            replaced(self, |piece| match is_line(piece) {
+                true => Vec::new(),
+                false => piece.between().collect(),
+            })
+        };
+        let has_lines = self.pieces().any(|piece| is_line(&piece));
+        has_lines.then(|| Self::of_points(lines(), self.is_closed()))
     }
 
     /// The rounded path drawn the other way. Which of equal paths is the canonical one may depend on the direction.
@@ -80,7 +110,10 @@ impl Path {
 
     /// True if the path is closed and its points are not all in one line.
     pub(super) fn encloses(&self) -> bool {
-        let [a, b, ..] = self.points() else {
+        let mut points = self.points().iter();
+        let Some(a) = points.next() else { return false };
+        // The first control point of a cubic curve may lie on its start.
+        let Some(b) = points.find(|p| p.at != a.at) else {
             return false;
         };
         let side = |p: &PathPoint| (b.at - a.at).cross(p.at - a.at);
@@ -91,17 +124,40 @@ impl Path {
     }
 }
 
-/// All on-points of a path, implied ones included, with what `between` gives for each segment.
-fn replaced(path: &Path, between: impl Fn(PathSeg) -> Option<PathPoint>) -> Vec<PathPoint> {
+/// All on-points of a path, implied ones included, with what `between` gives for each piece.
+fn replaced(path: &Path, between: impl Fn(&PathPiece) -> Vec<PathPoint>) -> Vec<PathPoint> {
     let start = path
-        .segments()
+        .pieces()
         .next()
         .map(|first| PathPoint::on(first.start()));
-    let rest = path.segments().flat_map(|segment| {
-        let end = PathPoint::on(segment.end());
-        between(segment).into_iter().chain([end])
+    let rest = path.pieces().flat_map(|piece| {
+        let end = PathPoint::on(piece.end());
+        between(&piece).into_iter().chain([end])
     });
     start.into_iter().chain(rest).collect()
+}
+
+/// The `rounded` points of a path, whose arcs are those of the points as `given`, in the same order, that begins on the path.
+fn with_arcs(given: &[PathPoint], rounded: &[PathPoint], grid: &Grid) -> Vec<PathPoint> {
+    let count = given.len();
+    let around =
+        |points: &[PathPoint], i: usize| [i + count - 1, i, i + 1].map(|k| points[k % count].at);
+    let point = |i: usize| {
+        if rounded[i].kind != PointKind::Arc {
+            return vec![rounded[i]];
+        }
+        let ([from, through, to], [start, _, end]) = (around(given, i), around(rounded, i));
+        let points = Arc { from, through, to }
+            .rounded([start, end], grid)
+            .into_iter();
+        let points = points.flat_map(|point| match point {
+            Rounded::On(p) => vec![PathPoint::on(p)],
+            Rounded::Arc(p) => vec![PathPoint::arc(p)],
+            Rounded::Cubic(controls) => controls.map(PathPoint::cubic).to_vec(),
+        });
+        points.collect()
+    };
+    (0..count).flat_map(point).collect()
 }
 
 /// A path on its way to canonical form, in whole units.
@@ -124,19 +180,17 @@ impl Canonical {
         }
     }
 
-    /// Makes lines of curves whose control point lies at one of their ends.
+    /// Makes lines of curves whose control points add nothing to the line between their ends.
     fn straighten(&mut self) {
-        let is_line = |curve: QuadBez| [curve.p0, curve.p2].contains(&curve.p1);
-        let path = Path::of_points(self.points.clone(), self.closed);
-        let is_straight =
-            |segment: PathSeg| matches!(segment, PathSeg::Quad(curve) if is_line(curve));
-        // All on-points are written out first: without its control point, a curve would take its implied ends along.
-        if path.segments().any(is_straight) {
-            self.points = replaced(&path, |segment| match segment {
-                PathSeg::Quad(curve) if !is_line(curve) => Some(PathPoint::off(curve.p1)),
-                _ => None,
-            });
-        }
+        let is_line = |piece: &PathPiece| match piece {
+            PathPiece::Line(_) => false,
+            PathPiece::Quad(curve) => [curve.p0, curve.p2].contains(&curve.p1),
+            PathPiece::Cubic(curve) => is_straight_cubic(curve),
+            // The arc's own point is in px here.
+            PathPiece::Arc(arc) => arc.from == arc.to,
+        };
+        let path = Path::of_points(std::mem::take(&mut self.points), self.closed);
+        self.points = path.without_between(is_line).unwrap_or(path).into_points();
     }
 
     /// Applies the rules of the canonical form once. None of them changes the shape of a piece.
@@ -144,7 +198,7 @@ impl Canonical {
         // 1. On-points that two off-points imply. Their neighbours are off-points, so removing them all at once is safe.
         self.retain(|[before, point, after]| !is_implied(before, point, after));
         // 2. On-points in one place, also where a closed path ends at its start.
-        let coincide = |p: &PathPoint, q: &PathPoint| p.is_on && q.is_on && p.at == q.at;
+        let coincide = |p: &PathPoint, q: &PathPoint| p.is_on() && q.is_on() && p.at == q.at;
         self.points.dedup_by(|next, kept| coincide(next, kept));
         while self.closed
             && self.points.len() > 1
@@ -152,7 +206,7 @@ impl Canonical {
         {
             self.points.pop();
         }
-        // 3. Control points at an end of their curve. Both neighbours are on-points, so these stay.
+        // 3. Control points at an end of their quadratic curve. Both neighbours are on-points, so these stay.
         self.retain(|[before, point, after]| !is_straight(before, point, after));
         // 4. A path whose points coincide is a dot, and a dot is open.
         if let Some([first, _]) = self
@@ -164,7 +218,7 @@ impl Canonical {
         self.closed &= self.points.len() > 1;
         if self.closed {
             // 5. A closed path begins with an on-point if it has one, as the file's `M` does.
-            let first_on = self.points.iter().position(|p| p.is_on);
+            let first_on = self.points.iter().position(PathPoint::is_on);
             self.points.rotate_left(first_on.unwrap_or(0));
         }
     }
@@ -190,13 +244,31 @@ impl Canonical {
 /// True if an on-point lies where one between these off-points is implied.
 fn is_implied(before: &PathPoint, point: &PathPoint, after: &PathPoint) -> bool {
     let is_halfway = before.at.midpoint(after.at) == point.at;
-    point.is_on && !before.is_on && !after.is_on && is_halfway
+    point.is_on() && before.is_quad() && after.is_quad() && is_halfway
 }
 
 /// True if an off-point makes a line, because it lies at one of the two on-points beside it.
 fn is_straight(before: &PathPoint, point: &PathPoint, after: &PathPoint) -> bool {
-    let are_on = before.is_on && after.is_on;
-    !point.is_on && are_on && [before.at, after.at].contains(&point.at)
+    let are_on = before.is_on() && after.is_on();
+    point.is_quad() && are_on && [before.at, after.at].contains(&point.at)
+}
+
+/// True if both control points of a curve in whole units lie on the line between its ends, and the curve doesn't turn back on it.
+fn is_straight_cubic(curve: &CubicBez) -> bool {
+    // Products of units may be beyond 2⁵³, where floats are no longer exact.
+    let way = |from: Point, to: Point| [to.x - from.x, to.y - from.y].map(|units| units as i128);
+    let chord = way(curve.p0, curve.p3);
+    let legs = [
+        (curve.p0, curve.p1),
+        (curve.p1, curve.p2),
+        (curve.p2, curve.p3),
+    ];
+    legs.into_iter().all(|(from, to)| {
+        let [x, y] = way(from, to);
+        let is_along = chord[0] * y == chord[1] * x && chord[0] * x + chord[1] * y >= 0;
+        // Of a loop, whose chord has no direction, every leg has to have no length.
+        is_along && (chord != [0; 2] || [x, y] == [0; 2])
+    })
 }
 
 /// The smallest radius of curvature of a curve, px. Cairo draws a sharper bend without its round outside: of a stroke
@@ -235,12 +307,13 @@ fn cusp(curve: &QuadBez) -> Option<Point> {
 mod tests {
     use super::*;
     use crate::scene::UNITS_PER_PX;
+    use kurbo::PathSeg;
 
     /// Points by their places, each on the path if it says so.
     fn points(list: &[(f64, f64, bool)]) -> Vec<PathPoint> {
         let point = |&(x, y, is_on): &(f64, f64, bool)| PathPoint {
             at: Point::new(x, y),
-            is_on,
+            kind: PointKind::on_if(is_on),
         };
         list.iter().map(point).collect()
     }
@@ -252,7 +325,7 @@ mod tests {
         let tenths = |px: f64| units(px) / (UNITS_PER_PX / 10);
         let points = written.points().iter();
         let points = points
-            .map(|p| (tenths(p.at.x), tenths(p.at.y), p.is_on))
+            .map(|p| (tenths(p.at.x), tenths(p.at.y), p.is_on()))
             .collect();
         (points, written.is_closed())
     }
@@ -277,7 +350,7 @@ mod tests {
                 let away = before.at - after.at;
                 let away = away.x.abs().max(away.y.abs());
                 assert!(
-                    away <= if before.is_on { 0.0501 } else { 0.1001 },
+                    away <= if before.is_on() { 0.0501 } else { 0.1001 },
                     "{after:?}"
                 );
             }

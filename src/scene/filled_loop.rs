@@ -30,7 +30,7 @@ impl Path {
         };
         let mut points: Vec<PathPoint> = self.points().to_vec();
         // An open path begins with an on-point, which here was implied.
-        if !points.first().is_some_and(|p| p.is_on) {
+        if !points.first().is_some_and(PathPoint::is_on) {
             points.insert(0, PathPoint::on(start));
         }
         points.push(PathPoint::on(start));

@@ -15,6 +15,9 @@ pub(crate) const UNITS_PER_PX: i64 = 10_i64.pow(MAX_PRECISION as u32);
 /// opacity, with the wrong ink on diagonals. The excess over 1 px keeps rounding from reaching 1 px.
 pub const MIN_WIDTH: f64 = 1.02;
 
+/// Largest absolute value of a coordinate, and radius of an arc, px. All decimals up to here are exact.
+pub(super) const MAX_COORDINATE: f64 = 1e9;
+
 /// The decimal of a rounded coordinate or length, in units of 1/[`UNITS_PER_PX`] px.
 pub(crate) fn units(px: f64) -> i64 {
     (px * UNITS_PER_PX as f64).round() as i64
@@ -38,6 +41,11 @@ impl Grid {
         Self {
             per_px: per_px as f64,
         }
+    }
+
+    /// The distance of neighbouring multiples, px.
+    pub(super) fn step(&self) -> f64 {
+        1.0 / self.per_px
     }
 
     /// The nearest multiple.

@@ -270,7 +270,7 @@ fn cross(a: Line, b: Line) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Area, Cap, Path, PathPoint, Stroke};
+    use crate::scene::{Area, Cap, Path, PathPoint, PointKind, Stroke};
 
     fn stroke_along(path: Path, width: f64) -> Mark {
         let stroke = Stroke {
@@ -313,7 +313,7 @@ mod tests {
     fn a_path_touches_where_it_goes_and_nowhere_else() {
         let points = [(10.0, true), (50.0, false), (90.0, true)].map(|(x, is_on)| PathPoint {
             at: Point::new(x, if is_on { 10.0 } else { 90.0 }),
-            is_on,
+            kind: PointKind::on_if(is_on),
         });
         let arch = stroke_along(Path::of_points(points.into(), false), 2.0);
         // The top of the curve is at (50, 50).

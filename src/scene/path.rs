@@ -1,12 +1,19 @@
 //! Paths: the centre lines of strokes and the outlines of areas.
 //!
-//! A path is a list of points, each **on** the path or **off** it, as in TrueType's outlines. Two on-points in a row
-//! are joined by a line. A run of off-points between two on-points is a quadratic spline: each off-point is the control
-//! point of a quadratic Bézier curve, and these curves meet halfway between neighbouring off-points, in *implied*
-//! on-points, without a corner. A closed path goes on from its last point to its first; an open one starts and ends on
-//! the path. A path of one point is a dot.
+//! A path is a list of points of four [kinds](PointKind). What lies between two **on**-points says how they are joined:
 //!
-//! The points are what a fit moves. [`Path::segments`] and [`Path::bezier`] are the same path as `kurbo` has it.
+//! | points between | joined by |
+//! | --- | --- |
+//! | none | a line |
+//! | one or more `Quad` | a quadratic spline, as in TrueType's outlines: each is the control point of a quadratic Bézier curve, and these curves meet halfway between neighbours, in *implied* on-points, without a corner |
+//! | two `Cubic` | a cubic Bézier curve, whose control points they are |
+//! | one `Arc` | a circular arc through it |
+//!
+//! A closed path goes on from its last point to its first, and may have none but `Quad` points; an open one starts and ends
+//! on the path. A path of one point is a dot.
+//!
+//! The points are what a fit moves. [`Path::pieces`] are the lines, curves and arcs; [`Path::segments`] and [`Path::bezier`]
+//! are the same path as `kurbo` has it, with cubic curves for arcs.
 //!
 //! ```
 //! use kurbo::{Line, PathSeg, QuadBez};
@@ -21,35 +28,15 @@
 //! # Ok::<(), strokefit::Error>(())
 //! ```
 
-use kurbo::{BezPath, Line, ParamCurve, PathEl, PathSeg, QuadBez, Rect};
+use kurbo::{BezPath, Line, ParamCurve, PathEl, PathSeg, Rect};
 
+use super::piece::{PathPiece, PathPoint, Pieces, PointKind};
 use super::shape::{Shape, ShapeKind};
 use crate::error::{Error, ErrorKind, Result};
 use crate::math::{Point, Vec2};
 
 /// Most points of a path.
 pub const MAX_POINTS: usize = 65_535;
-
-/// A point of a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PathPoint {
-    /// Its coordinates, px.
-    pub at: Point,
-    /// True if the path goes through it; otherwise it is the control point of a curve.
-    pub is_on: bool,
-}
-
-impl PathPoint {
-    /// A point that the path goes through.
-    pub fn on(at: Point) -> Self {
-        Self { at, is_on: true }
-    }
-
-    /// A control point.
-    pub fn off(at: Point) -> Self {
-        Self { at, is_on: false }
-    }
-}
 
 /// One point or more, open or closed.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,23 +51,19 @@ impl Path {
     /// The path of these points.
     ///
     /// # Errors
-    /// [`ErrorKind::Config`] when there is no point or there are more than [`MAX_POINTS`], or when an open path starts
-    /// or ends off the path.
+    /// [`ErrorKind::Config`] when there is no point or there are more than [`MAX_POINTS`], or as [`PointKind::check`].
     pub fn new(points: Vec<PathPoint>, closed: bool) -> Result<Self> {
         let refused = |message: String| Err(Error::new(ErrorKind::Config, message));
-        let ends_on = |end: Option<&PathPoint>| end.is_some_and(|p| p.is_on);
         match points.len() {
             0 => refused("a path has no point: give at least one".into()),
             n if n > MAX_POINTS => refused(format!(
                 "a path has {n} points: split it, so that each part has at most {MAX_POINTS}"
             )),
-            n if (!closed || n == 1) && !(ends_on(points.first()) && ends_on(points.last())) => {
-                refused(
-                    "an open path has to start and end with points on it: close it, or add an end"
-                        .into(),
-                )
+            _ => {
+                let kinds: Vec<PointKind> = points.iter().map(|p| p.kind).collect();
+                PointKind::check(&kinds, closed)?;
+                Ok(Self::of_points(points, closed))
             }
-            _ => Ok(Self::of_points(points, closed)),
         }
     }
 
@@ -108,6 +91,11 @@ impl Path {
         &self.points
     }
 
+    /// The points, without the path.
+    pub(super) fn into_points(self) -> Vec<PathPoint> {
+        self.points
+    }
+
     /// True if the last point is joined to the first.
     pub fn is_closed(&self) -> bool {
         self.closed
@@ -122,7 +110,7 @@ impl Path {
     /// it.
     #[must_use]
     pub(crate) fn recognised(self) -> Self {
-        let points = self.points.iter().map(|p| (p.at, p.is_on));
+        let points = self.points.iter().map(|p| (p.at, p.kind));
         let points = self.closed.then(|| points.collect::<Vec<_>>());
         let shape = points.and_then(|points| ShapeKind::shape_of(&points));
         shape.map_or(self, Shape::path)
@@ -137,7 +125,7 @@ impl Path {
         let is_upright = |p: &PathPoint, q: &PathPoint| p.at.x == q.at.x;
         let is_along = is_level(a, b) && is_upright(b, c) && is_level(c, d) && is_upright(d, a)
             || is_upright(a, b) && is_level(b, c) && is_upright(c, d) && is_level(d, a);
-        let is_rect = self.closed && self.points().iter().all(|p| p.is_on) && is_along;
+        let is_rect = self.closed && self.points().iter().all(PathPoint::is_on) && is_along;
         let bounds = self.bounds();
         let corners = [bounds.origin(), Point::new(bounds.x1, bounds.y1)];
         (is_rect && bounds.area() > 0.0).then(|| Shape::rect(corners, 0.0))
@@ -174,15 +162,56 @@ impl Path {
     pub(crate) fn reversed(&self) -> Self {
         let mut points: Vec<PathPoint> = self.points.iter().rev().copied().collect();
         // A closed path keeps its start, so that only the direction changes.
-        if self.closed && self.points.first().is_some_and(|p| p.is_on) {
+        if self.closed && self.points.first().is_some_and(PathPoint::is_on) {
             points.rotate_right(1);
         }
         Self::of_points(points, self.closed)
     }
 
-    /// The lines and curves of the path, in drawing order; none for a dot.
+    /// The lines, curves and arcs of the path, in drawing order; none for a dot.
+    pub fn pieces(&self) -> impl Iterator<Item = PathPiece> {
+        Pieces::new(&self.points, self.closed)
+    }
+
+    /// The lines and curves of the path, in drawing order; none for a dot. An arc is as many cubic curves as keep within 10⁻⁵ of
+    /// its radius.
     pub fn segments(&self) -> impl Iterator<Item = PathSeg> {
-        Segments::new(&self.points, self.closed)
+        self.pieces().flat_map(PathPiece::segments)
+    }
+
+    /// True if it has cubic curves or arcs.
+    pub(crate) fn is_mixed(&self) -> bool {
+        let is_other = |p: &PathPoint| matches!(p.kind, PointKind::Cubic | PointKind::Arc);
+        self.points.iter().any(is_other)
+    }
+
+    /// The path with quadratic curves at most `tolerance` px away from its cubic curves and arcs.
+    #[must_use]
+    pub(crate) fn quadratic(&self, tolerance: f64) -> Self {
+        if !self.is_mixed() {
+            return self.clone();
+        }
+        let segments = self.segments().map(|segment| (segment, segment.end()));
+        let rest = segments.flat_map(|(segment, end)| match segment {
+            PathSeg::Line(_) => vec![PathPoint::on(end)],
+            PathSeg::Quad(curve) => vec![PathPoint::off(curve.p1), PathPoint::on(end)],
+            PathSeg::Cubic(curve) => {
+                let quads = curve.to_quads(tolerance);
+                quads
+                    .flat_map(|(.., quad)| [PathPoint::off(quad.p1), PathPoint::on(quad.p2)])
+                    .collect()
+            }
+        });
+        let start = self
+            .pieces()
+            .next()
+            .map(|first| PathPoint::on(first.start()));
+        let mut points: Vec<PathPoint> = start.into_iter().chain(rest).collect();
+        // The last piece of a closed path ends at the first point.
+        if self.closed {
+            points.pop();
+        }
+        Self::of_points(points, self.closed)
     }
 
     /// The path as `kurbo` has it. A closed one ends where it starts.
@@ -217,12 +246,24 @@ impl Path {
 
     /// True if segments meet, so that the shape of joins matters.
     pub(crate) fn has_joins(&self) -> bool {
-        self.closed || self.segments().nth(1).is_some()
+        self.closed || self.pieces().nth(1).is_some()
     }
 
-    /// The box around the points.
+    /// The box around its [hull](Self::hull).
     pub(crate) fn bounds(&self) -> Rect {
-        bounds(self.points.iter().map(|p| p.at))
+        bounds(self.hull())
+    }
+
+    /// Points whose convex hull has the path in it: its own, and for arcs the control points of curves that go farther out.
+    pub(crate) fn hull(&self) -> impl Iterator<Item = Point> {
+        let is_arc = |piece: &PathPiece| matches!(piece, PathPiece::Arc(_));
+        let arcs = self.is_mixed().then(|| self.pieces().filter(is_arc));
+        let curves = arcs.into_iter().flatten().flat_map(PathPiece::segments);
+        let controls = curves.flat_map(|segment| {
+            let curve = segment.to_cubic();
+            [curve.p1, curve.p2]
+        });
+        self.points.iter().map(|p| p.at).chain(controls)
     }
 }
 
@@ -235,74 +276,10 @@ pub(crate) fn bounds(points: impl IntoIterator<Item = Point>) -> Rect {
     })
 }
 
-/// The segments of a path that are still to come.
-struct Segments<'a> {
-    points: &'a [PathPoint],
-    /// The index of the point after the next segment's start; a closed path goes on from 0 beyond its last point.
-    next: usize,
-    /// The index at which the path has come to its end.
-    end: usize,
-    /// Where the next segment starts; nowhere if the path has no point.
-    at: Option<Point>,
-}
-
-impl<'a> Segments<'a> {
-    fn new(points: &'a [PathPoint], closed: bool) -> Self {
-        let count = points.len();
-        let first_on = points.iter().position(|p| p.is_on);
-        let (next, at) = match (first_on, points) {
-            (Some(first), _) => (first + 1, Some(points[first].at)),
-            // All points of a closed path may be off: it starts halfway between the last one and the first.
-            (None, [first, .., last]) => (0, Some(last.at.midpoint(first.at))),
-            _ => (0, None),
-        };
-        let end = match (count, closed) {
-            (0 | 1, _) => next,
-            (_, true) => next + count,
-            (_, false) => count,
-        };
-        Self {
-            points,
-            next,
-            end,
-            at,
-        }
-    }
-
-    fn point(&self, i: usize) -> PathPoint {
-        self.points[i % self.points.len()]
-    }
-}
-
-impl Iterator for Segments<'_> {
-    type Item = PathSeg;
-
-    fn next(&mut self) -> Option<PathSeg> {
-        if self.next >= self.end {
-            return None;
-        }
-        let (from, knot) = (self.at?, self.point(self.next));
-        self.next += 1;
-        if knot.is_on {
-            self.at = Some(knot.at);
-            return Some(PathSeg::Line(Line::new(from, knot.at)));
-        }
-        let after = self.point(self.next);
-        let to = if after.is_on {
-            self.next += 1;
-            after.at
-        } else {
-            knot.at.midpoint(after.at)
-        };
-        self.at = Some(to);
-        Some(PathSeg::Quad(QuadBez::new(from, knot.at, to)))
-    }
-}
-
 impl Shape {
     /// The closed path of the shape's element; its curves bulge by 0.02 px at most.
     pub fn path(self) -> Path {
-        let points = self.points().map(|(at, is_on)| PathPoint { at, is_on });
+        let points = self.points().map(|(at, kind)| PathPoint { at, kind });
         Path {
             points: points.collect(),
             closed: true,
@@ -329,7 +306,7 @@ mod tests {
     fn path(points: &[(f64, f64, bool)], closed: bool) -> Result<Path> {
         let point = |&(x, y, is_on): &(f64, f64, bool)| PathPoint {
             at: Point::new(x, y),
-            is_on,
+            kind: PointKind::on_if(is_on),
         };
         Path::new(points.iter().map(point).collect(), closed)
     }

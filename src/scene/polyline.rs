@@ -2,7 +2,8 @@
 
 use kurbo::{Line, ParamCurveNearest, Vec2};
 
-use super::path::{Path, PathPoint};
+use super::path::Path;
+use super::piece::PathPoint;
 use crate::math::Point;
 
 /// Cosine of the slightest turn that is a clear corner.

@@ -7,12 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use kurbo::Rect;
 
-use super::grid::{Grid, MIN_WIDTH, color, quantum};
+use super::grid::{Grid, MAX_COORDINATE, MIN_WIDTH, color, quantum};
 use super::path::bounds;
-use super::{Area, Cap, Mark, Path, PathPoint, Rgb, Scene, Shade, Shape, Stroke};
-
-/// Largest absolute value of a coordinate, px. All decimals up to here are exact.
-const MAX_COORDINATE: f64 = 1e9;
+use super::{Area, Cap, Mark, Path, Rgb, Scene, Shade, Shape, Stroke};
+use crate::math::Point;
 
 /// A scene rounded to the numbers that its SVG holds, with counts of the marks that were dropped.
 #[derive(Debug, Clone, PartialEq)]
@@ -131,9 +129,9 @@ impl Mark {
         self.bounds().inflate(reach, reach)
     }
 
-    /// The box around its points, px.
+    /// The box around its paths, px: that of points that have them in their hull.
     pub(crate) fn bounds(&self) -> Rect {
-        bounds(self.paths().iter().flat_map(Path::points).map(|p| p.at))
+        bounds(self.paths().iter().flat_map(Path::hull))
     }
 }
 
@@ -235,7 +233,7 @@ fn shaped(path: &Path, rounded: Path, grid: &Grid) -> Path {
 
 /// Refuses marks that are invisible at any precision.
 fn check(mark: &Mark) -> Result<(), Unwritable> {
-    let far = |p: &PathPoint| p.at.x.abs() > MAX_COORDINATE || p.at.y.abs() > MAX_COORDINATE;
+    let far = |p: Point| p.x.abs() > MAX_COORDINATE || p.y.abs() > MAX_COORDINATE;
     let radius = mark.radius();
     let is_thin = !mark.is_area() && radius <= 0.0;
     // NaN first: every comparison below would be false for it.
@@ -243,7 +241,7 @@ fn check(mark: &Mark) -> Result<(), Unwritable> {
         Err(Unwritable::NonFinite)
     } else if is_thin || quantum(mark.opacity()) == 0 {
         Err(Unwritable::Invisible)
-    } else if radius > MAX_COORDINATE || mark.paths().iter().flat_map(Path::points).any(far) {
+    } else if radius > MAX_COORDINATE || mark.paths().iter().flat_map(Path::hull).any(far) {
         Err(Unwritable::OffPage)
     } else {
         Ok(())
@@ -261,7 +259,6 @@ fn quantized_opacity(opacity: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Point;
     use crate::scene::Stage;
 
     fn stroke(path: Path) -> Stroke {

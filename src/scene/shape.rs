@@ -10,6 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 use serde::{Deserialize, Serialize};
 
 use super::grid::{Grid, units};
+use super::piece::PointKind;
 use crate::math::{self, Point, Vec2};
 
 /// A closed path with an element of its own.
@@ -60,12 +61,12 @@ const CORNERS: [usize; 4] = [3, 0, 1, 2];
 struct Place {
     is_high: [bool; 2],
     factors: [f64; 2],
-    is_on: bool,
+    kind: PointKind,
 }
 
 impl Shape {
-    /// The points of the shape's path, px, and whether each is on it; the curves bulge by 0.02 px at most.
-    pub(super) fn points(self) -> impl Iterator<Item = (Point, bool)> {
+    /// The points of the shape's path, px, and their kinds; the curves bulge by 0.02 px at most.
+    pub(super) fn points(self) -> impl Iterator<Item = (Point, PointKind)> {
         let radius = match self {
             Self::Circle { radius, .. } | Self::Rect { radius, .. } => radius,
             Self::Ellipse { radii: [x, y], .. } => x.max(y),
@@ -77,7 +78,7 @@ impl Shape {
         let frame = self.frame();
         places
             .into_iter()
-            .map(move |place| (frame.at(&place), place.is_on))
+            .map(move |place| (frame.at(&place), place.kind))
     }
 
     /// The shape with its numbers on the `grid`; `None` if nothing is left of it.
@@ -203,16 +204,16 @@ impl ShapeKind {
         put(change, frame, &places);
     }
 
-    /// The shape whose path has these points, each with whether it is on the path, as exactly as single precision gives them.
-    pub(super) fn shape_of(points: &[(Point, bool)]) -> Option<Shape> {
+    /// The shape whose path has these points, each with its kind, as exactly as single precision gives them.
+    pub(super) fn shape_of(points: &[(Point, PointKind)]) -> Option<Shape> {
         let at: Vec<[f32; 2]> = points.iter().map(|(p, _)| math::xy(*p)).collect();
         let exactly = |kind: Self| {
             let quarter = points.len().checked_sub(kind.ends())? / 4;
             let places = QUARTERS.contains(&quarter).then(|| kind.places(quarter))?;
             let shape = kind.nearest(&at).filter(|_| places.len() == at.len())?;
-            let is_exact = |((p, is_on), place): (&(Point, bool), &Place)| {
+            let is_exact = |((p, kind), place): (&(Point, PointKind), &Place)| {
                 let away = shape.frame().at(place) - *p;
-                *is_on == place.is_on && away.x.abs().max(away.y.abs()) < EXACT
+                *kind == place.kind && away.x.abs().max(away.y.abs()) < EXACT
             };
             points.iter().zip(&places).all(is_exact).then_some(shape)
         };
@@ -239,7 +240,7 @@ impl ShapeKind {
                 let place = |factors| Place {
                     is_high: [false; 2],
                     factors,
-                    is_on: false,
+                    kind: PointKind::Quad,
                 };
                 arcs.map(place).collect()
             }
@@ -247,17 +248,17 @@ impl ShapeKind {
                 let corner = |turn: usize| {
                     let is_high = [turn == 3 || turn == 0, turn < 2];
                     let sign = is_high.map(|is_high| if is_high { 1.0 } else { -1.0 });
-                    let place = move |(direction, is_on): ([f64; 2], bool)| Place {
+                    let place = move |(direction, kind): ([f64; 2], PointKind)| Place {
                         is_high,
                         factors: [0, 1].map(|axis| direction[axis] - sign[axis]),
-                        is_on,
+                        kind,
                     };
-                    let ends = [0.0, 1.0].map(|share| (turned(turn, share, 1.0), true));
+                    let ends = [0.0, 1.0].map(|share| (turned(turn, share, 1.0), PointKind::On));
                     let [start, end] = ends.map(|end| vec![end]);
-                    let arc = arc(turn, quarter).map(|direction| (direction, false));
+                    let arc = arc(turn, quarter).map(|direction| (direction, PointKind::Quad));
                     let points = match self {
                         Self::RoundRect => [start, arc.collect(), end].concat(),
-                        _ => vec![(sign, true)],
+                        _ => vec![(sign, PointKind::On)],
                     };
                     points.into_iter().map(place)
                 };

@@ -2,11 +2,9 @@
 
 use svgtypes::{PathParser, PathSegment};
 
-use kurbo::{ParamCurve, PathSeg};
-
 use super::dialect::{MAX_UNITS, Unit};
 use crate::math::Point;
-use crate::scene::{Path, PathPoint, UNITS_PER_PX, px, units};
+use crate::scene::{Arc, ArcNumbers, Path, PathPiece, PathPoint, UNITS_PER_PX, px, units};
 
 /// The length of the segment that represents a dot.
 const DOT: i64 = UNITS_PER_PX / 100;
@@ -53,32 +51,42 @@ struct Writer {
 
 impl Writer {
     fn push(&mut self, path: &Path) {
-        let mut segments = path.segments().peekable();
-        let Some(first) = segments.peek().map(|first| place(first.start())) else {
+        let mut pieces = path.pieces().peekable();
+        let Some(first) = pieces.peek().map(|first| place(first.start())) else {
             return self.push_dot(path);
         };
         // SVG reads further numbers after M as a line, so the next step has to have its letter.
         self.push_step('M', &[first]);
         self.letter = None;
-        // The control point of the last curve; after a line or a move there is none to mirror.
-        let mut control = None;
-        while let Some(segment) = segments.next() {
-            let [from, to] = [segment.start(), segment.end()].map(place);
-            let knee = match segment {
-                PathSeg::Quad(curve) => Some(place(curve.p1)),
-                _ => None,
-            };
-            match knee {
+        // The last control point of the last curve; after a line, an arc or a move there is none to mirror.
+        let mut control = Control::default();
+        while let Some(piece) = pieces.next() {
+            let [from, to] = [piece.start(), piece.end()].map(place);
+            // T and S take the control point opposite of the last one, which is exact in whole units.
+            let opposite = control.map(|last| last.map(|control| mirrored(control, from)));
+            control = Control::default();
+            match piece {
                 // The command that closes the path draws this line.
-                None if path.is_closed() && segments.peek().is_none() => {}
-                None => self.push_step(self.line_letter(from, to), &[to]),
-                // T takes the control point opposite of the last one, which is exact in whole units.
-                Some(knee) if control.map(|c| mirrored(c, from)) == Some(knee) => {
-                    self.push_step('T', &[to]);
+                PathPiece::Line(_) if path.is_closed() && pieces.peek().is_none() => {}
+                PathPiece::Line(_) => self.push_step(self.line_letter(from, to), &[to]),
+                PathPiece::Quad(curve) => {
+                    let knee = place(curve.p1);
+                    match opposite[QUAD] == Some(knee) {
+                        true => self.push_step('T', &[to]),
+                        false => self.push_step('Q', &[knee, to]),
+                    }
+                    control[QUAD] = Some(knee);
                 }
-                Some(knee) => self.push_step('Q', &[knee, to]),
+                PathPiece::Cubic(curve) => {
+                    let [first, second] = [curve.p1, curve.p2].map(place);
+                    match opposite[CUBIC] == Some(first) {
+                        true => self.push_step('S', &[second, to]),
+                        false => self.push_step('C', &[first, second, to]),
+                    }
+                    control[CUBIC] = Some(second);
+                }
+                PathPiece::Arc(arc) => self.push_arc(arc.numbers(), to),
             }
-            control = knee;
         }
         if path.is_closed() {
             self.out.push('z');
@@ -106,21 +114,50 @@ impl Writer {
         }
     }
 
-    /// Appends a step to the last of these places in its shortest form. It does without a letter where the letter of
-    /// the last step serves, and that is no longer.
+    /// Appends a step to the last of these places in its shortest form.
     fn push_step(&mut self, letter: char, places: &[Place]) {
-        // The shorter of the two. Of equal lengths, the one with the last letter: the next step may go without it.
-        let from_page = self.lettered(letter, &self.numbers(letter, [0, 0], places));
-        let from_here = self.at.map(|at| {
-            let numbers = self.numbers(letter, at, places);
-            self.lettered(letter.to_ascii_lowercase(), &numbers)
+        self.push_shortest(letter, places.last().copied(), |writer, origin| {
+            writer.numbers(letter, origin, places)
         });
+    }
+
+    /// Appends an arc.
+    fn push_arc(&mut self, numbers: ArcNumbers, to: Place) {
+        self.push_shortest('A', Some(to), |writer, origin| {
+            let mut text = String::new();
+            for separator in ["", " "] {
+                text += separator;
+                writer.unit.push(&mut text, numbers.radius);
+            }
+            let flags = [numbers.is_large, numbers.is_clockwise].map(u8::from);
+            text += &format!(" 0 {} {}", flags[0], flags[1]);
+            let end = writer.numbers('A', origin, &[to]);
+            if !end.starts_with('-') {
+                text.push(' ');
+            }
+            text + &end
+        });
+    }
+
+    /// Appends a step that ends at `to` in its shortest form, of the numbers that `text` gives as seen from a place. It does
+    /// without a letter where the letter of the last step serves, and that is no longer.
+    fn push_shortest(
+        &mut self,
+        letter: char,
+        to: Option<Place>,
+        text: impl Fn(&Self, Place) -> String,
+    ) {
+        // The shorter of the two. Of equal lengths, the one with the last letter: the next step may go without it.
+        let from_page = self.lettered(letter, &text(self, [0, 0]));
+        let from_here = self
+            .at
+            .map(|at| self.lettered(letter.to_ascii_lowercase(), &text(self, at)));
         let steps = [Some(from_page), from_here].into_iter().flatten();
         let shortest =
             steps.min_by_key(|(letter, text)| (text.len(), self.letter != Some(*letter)));
         if let Some((letter, text)) = shortest {
             self.out.push_str(&text);
-            (self.at, self.letter) = (places.last().copied(), Some(letter));
+            (self.at, self.letter) = (to, Some(letter));
         }
     }
 
@@ -155,6 +192,13 @@ impl Writer {
     }
 }
 
+/// The last control points of the step before, by the kind of curve that may mirror them.
+type Control = [Option<Place>; 2];
+
+/// Of a quadratic curve, which T goes on with, and of a cubic one, which S does.
+const QUAD: usize = 0;
+const CUBIC: usize = 1;
+
 /// The place of a rounded point.
 fn place(p: Point) -> Place {
     [units(p.x), units(p.y)]
@@ -177,7 +221,7 @@ pub(super) fn parse(d: &str, kind: Kind, unit: Unit) -> Option<Vec<Path>> {
         paths: Vec::new(),
         points: Vec::new(),
         at: None,
-        control: None,
+        control: Control::default(),
     };
     for segment in PathParser::from(d) {
         reader.draw(segment.ok()?)?;
@@ -195,8 +239,8 @@ struct Reader {
     points: Vec<PathPoint>,
     /// Where a relative segment starts; nowhere after a dot.
     at: Option<Place>,
-    /// The control point of the last segment, if that was a curve.
-    control: Option<Place>,
+    /// The last control point of the last segment, if that was a curve.
+    control: Control,
 }
 
 impl Reader {
@@ -217,40 +261,83 @@ impl Reader {
                 // A move ends the path before it; an open one was complete with its last segment.
                 self.end()?;
                 self.points.push(PathPoint::on(point(start)));
-                (self.at, self.control) = (Some(start), None);
+                (self.at, self.control) = (Some(start), Control::default());
                 Some(())
             }
-            S::LineTo { x, y, .. } => self.extend(None, to(x, y)?),
+            S::LineTo { x, y, .. } => self.extend([], to(x, y)?),
             S::HorizontalLineTo { x, .. } if is_ring => {
                 let to = [along(0, x)?, self.at?[1]];
-                self.extend(None, within(to)?)
+                self.extend([], within(to)?)
             }
             S::VerticalLineTo { y, .. } if is_ring => {
                 let to = [self.at?[0], along(1, y)?];
-                self.extend(None, within(to)?)
+                self.extend([], within(to)?)
             }
             // Among strokes, the one horizontal step is the mark of a dot.
             S::HorizontalLineTo { abs: false, x } if self.unit.units(x)? == DOT => self.dot(),
-            S::Quadratic { x1, y1, x, y, .. } => self.extend(Some(to(x1, y1)?), to(x, y)?),
+            S::Quadratic { x1, y1, x, y, .. } => self.quadratic(to(x1, y1)?, to(x, y)?),
             S::SmoothQuadratic { x, y, .. } => {
                 // SVG takes the current point where no curve precedes; our dialect refuses that, as it never writes it.
-                let knee = within(mirrored(self.control?, self.at?))?;
-                self.extend(Some(knee), to(x, y)?)
+                let knee = within(mirrored(self.control[QUAD]?, self.at?))?;
+                self.quadratic(knee, to(x, y)?)
+            }
+            S::CurveTo {
+                x1,
+                y1,
+                x2,
+                y2,
+                x,
+                y,
+                ..
+            } => self.cubic([to(x1, y1)?, to(x2, y2)?], to(x, y)?),
+            S::SmoothCurveTo { x2, y2, x, y, .. } => {
+                let first = within(mirrored(self.control[CUBIC]?, self.at?))?;
+                self.cubic([first, to(x2, y2)?], to(x, y)?)
+            }
+            S::EllipticalArc {
+                rx,
+                ry,
+                x_axis_rotation: 0.0,
+                large_arc,
+                sweep,
+                x,
+                y,
+                ..
+            } if rx == ry && rx > 0.0 => {
+                let numbers = ArcNumbers {
+                    radius: self.unit.units(rx)?,
+                    is_large: large_arc,
+                    is_clockwise: sweep,
+                };
+                let (from, to) = (point(self.at?), to(x, y)?);
+                let arc = Arc::of_numbers([from, point(to)], numbers);
+                self.extend([PathPoint::arc(arc.through)], to)
             }
             S::ClosePath { .. } => self.close(),
             _ => None,
         }
     }
 
-    /// Draws a line or, with a control point, a curve.
-    fn extend(&mut self, control: Option<Place>, to: Place) -> Option<()> {
+    fn quadratic(&mut self, knee: Place, to: Place) -> Option<()> {
+        self.extend([PathPoint::off(point(knee))], to)?;
+        self.control[QUAD] = Some(knee);
+        Some(())
+    }
+
+    fn cubic(&mut self, controls: [Place; 2], to: Place) -> Option<()> {
+        self.extend(controls.map(|place| PathPoint::cubic(point(place))), to)?;
+        self.control[CUBIC] = Some(controls[1]);
+        Some(())
+    }
+
+    /// Draws a line or, with points `between`, a curve or an arc.
+    fn extend<const N: usize>(&mut self, between: [PathPoint; N], to: Place) -> Option<()> {
         if self.points.is_empty() {
             return None;
         }
-        self.points
-            .extend(control.map(|knee| PathPoint::off(point(knee))));
+        self.points.extend(between);
         self.points.push(PathPoint::on(point(to)));
-        (self.at, self.control) = (Some(to), control);
+        (self.at, self.control) = (Some(to), Control::default());
         Some(())
     }
 
@@ -288,7 +375,7 @@ impl Reader {
         let points = std::mem::take(&mut self.points);
         // Canonical form drops the on-points that are implied: the points are those that were written.
         self.paths.push(Path::canonical(points, closed));
-        self.control = None;
+        self.control = Control::default();
     }
 }
 
@@ -301,6 +388,7 @@ fn within(place: Place) -> Option<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::PointKind;
 
     fn px(x: i64, y: i64) -> Place {
         [x * UNITS_PER_PX, y * UNITS_PER_PX]
@@ -310,7 +398,7 @@ mod tests {
     fn path(points: &[(i64, i64, bool)], closed: bool) -> Path {
         let on_or_off = |&(x, y, is_on): &(i64, i64, bool)| PathPoint {
             at: point(px(x, y)),
-            is_on,
+            kind: PointKind::on_if(is_on),
         };
         Path::canonical(points.iter().map(on_or_off).collect(), closed)
     }
@@ -376,6 +464,71 @@ mod tests {
     }
 
     #[test]
+    fn a_cubic_curve_says_its_first_control_point_once() {
+        let cubic = |points: &[(i64, i64)]| {
+            let kind = |i: usize| [PathPoint::on, PathPoint::cubic][usize::from(i % 3 > 0)];
+            let points = points.iter().enumerate();
+            let points = points.map(|(i, &(x, y))| kind(i)(point(px(x, y))));
+            Path::canonical(points.collect(), false)
+        };
+        let arch = [(1, 5), (1, 1), (5, 1), (5, 5)];
+        assert_eq!(written(&[cubic(&arch)]), "M1 5C1 1 5 1 5 5");
+        let wave = [
+            arch.as_slice(),
+            &[(5, 9), (9, 8), (9, 2), (9, -4), (7, 1), (8, 8)],
+        ]
+        .concat();
+        assert_eq!(written(&[cubic(&wave)]), "M1 5C1 1 5 1 5 5S9 8 9 2 7 1 8 8");
+        let far: Vec<_> = wave.iter().map(|(x, y)| (x + 100, y + 100)).collect();
+        assert_eq!(
+            written(&[cubic(&far)]),
+            "M101 105c0-4 4-4 4 0s4 3 4-3-2-1-1 6"
+        );
+    }
+
+    #[test]
+    fn an_arc_has_its_radius_and_two_flags() {
+        let arc = |a, b, radius: f64, is_large, is_clockwise| {
+            let numbers = ArcNumbers {
+                radius: units(radius),
+                is_large,
+                is_clockwise,
+            };
+            let [a, b] = [a, b].map(|(x, y)| point(px(x, y)));
+            let between = PathPoint::arc(Arc::of_numbers([a, b], numbers).through);
+            Path::canonical(vec![PathPoint::on(a), between, PathPoint::on(b)], false)
+        };
+        let one = |a, b, radius, is_large, is_clockwise| {
+            written(&[arc(a, b, radius, is_large, is_clockwise)])
+        };
+        assert_eq!(
+            one((1, 2), (5, 6), 3.5, false, true),
+            "M1 2A3.5 3.5 0 0 1 5 6"
+        );
+        assert_eq!(one((1, 2), (-5, 6), 9.0, true, false), "M1 2A9 9 0 1 0-5 6");
+        assert_eq!(
+            one((100, 200), (98, 203), 7.25, false, false),
+            "M100 200a7.25 7.25 0 0 0-2 3"
+        );
+        // Half circles: half the chord if it is a decimal, or whole px.
+        assert_eq!(
+            one((1, 2), (6, 2), 0.1, true, true),
+            "M1 2A2.5 2.5 0 0 1 6 2"
+        );
+        assert_eq!(one((1, 2), (6, 8), 0.1, false, false), "M1 2A3 3 0 0 0 6 8");
+        let ends = [(1, 2), (5, 6)].map(|(x, y)| point(px(x, y)));
+        let middle = |x, y| PathPoint::arc(point(px(x, y)));
+        let disc = vec![
+            PathPoint::on(ends[0]),
+            middle(5, 2),
+            PathPoint::on(ends[1]),
+            middle(1, 6),
+        ];
+        let disc = Path::canonical(disc, true);
+        assert_eq!(written(&[disc]), "M1 2A2 2 0 0 1 5 6 2 2 0 0 1 1 2z");
+    }
+
+    #[test]
     fn a_closed_path_comes_back_to_its_start() {
         let corners = [(1, 2, true), (9, 2, true), (5, 8, true)];
         assert_eq!(written(&[path(&corners, true)]), "M1 2L9 2 5 8z");
@@ -414,6 +567,12 @@ mod tests {
             ("M1 2L1 2", "M1 2h0.01"),
             ("M1 2L3 4L3 4L5 6", "M1 2L3 4 5 6"),
             ("M1 2Q1 2 5 6", "M1 2L5 6"),
+            ("M1 2C2 3 4 5 5 6", "M1 2L5 6"),
+            ("M1 2C1 2 5 6 5 6", "M1 2L5 6"),
+            ("M1 2C0 1 4 5 5 6", "M1 2C0 1 4 5 5 6"),
+            ("M1 2A3 3 0 0 1 1 2", "M1 2h0.01"),
+            ("M1 2A3 3 0 0 1 5 2L6 2", "M1 2A3 3 0 0 1 5 2L6 2"),
+            ("M1 2a3 3 0 015 0", "M1 2A3 3 0 0 1 6 2"),
             ("M1 2L9 2L5 8L1 2Z", "M1 2L9 2 5 8z"),
             ("M1 5Q3 1 4 5Q5 9 9 9", "M1 5Q3 1 4 5T9 9"),
             ("M1,2 3 4 L5e0  6 ", "M1 2L3 4 5 6"),
@@ -458,8 +617,18 @@ mod tests {
             "M1 2Q3 4 5 6L7 8T9 9",
             "M1 2Q3 4",
             "M1 2Q3 4 5 6 7 8",
-            "M1 2C3 4 5 6 7 8",
-            "M1 2A3 3 0 0 1 5 6",
+            "M1 2C3 4 5 6",
+            "M1 2S3 4 5 6",
+            "M1 2Q3 4 5 6S3 4 5 6",
+            "M1 2C3 4 5 6 7 8T9 9",
+            "M1 2C3 4 5 6 7 8L7 9S9 9 3 3",
+            "M1 2A3 4 0 0 1 5 6",
+            "M1 2A3 3 30 0 1 5 6",
+            "M1 2A0 0 0 0 1 5 6",
+            "M1 2A-3-3 0 0 1 5 6",
+            "M1 2A3 3 0 0 2 5 6",
+            "M1 2A3.0000001 3.0000001 0 0 1 5 6",
+            "M1 2A3 3 0 0 1",
             "M1 2H5",
             "M1 2V5",
             "M2000000000 1l2000000000 1l1 1",

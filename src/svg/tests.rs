@@ -166,7 +166,7 @@ proptest! {
 
 fn has_curve(scene: &Scene) -> bool {
     let points = scene.marks().flat_map(Mark::paths).flat_map(Path::points);
-    points.into_iter().any(|p| !p.is_on)
+    points.into_iter().any(|p| !p.is_on())
 }
 
 /// Agreement of resvg's renders of two files, dB.

@@ -83,7 +83,7 @@ fn ends(path: &Path, start: usize) -> [Spot; 2] {
     }
     let previous = &points[(start + points.len() - 1) % points.len()];
     // Between two off-points the path begins at the implied point halfway.
-    let other = if first.is_on { first } else { previous };
+    let other = if first.is_on() { first } else { previous };
     [spot(first.at.midpoint(other.at)); 2]
 }
 
@@ -123,10 +123,9 @@ impl Visit {
         if !path.is_closed() {
             return vec![forward, forward.flipped()];
         }
-        let is_off = |point: &PathPoint| !point.is_on;
         // An implied start would have to be written; a ring without on-points has no other.
-        let all_off = path.points().iter().all(is_off);
-        let starts = (0..path.points().len()).filter(|&i| all_off || path.points()[i].is_on);
+        let all_off = !path.points().iter().any(PathPoint::is_on);
+        let starts = (0..path.points().len()).filter(|&i| all_off || path.points()[i].is_on());
         starts.map(beginning_at).collect()
     }
 

@@ -442,7 +442,7 @@ mod tests {
     }
 
     fn kinds(path: &Path) -> Vec<bool> {
-        path.points().iter().map(|p| p.is_on).collect()
+        path.points().iter().map(PathPoint::is_on).collect()
     }
 
     #[test]
@@ -455,7 +455,7 @@ mod tests {
     fn a_ring_is_a_closed_spline_of_few_control_points() {
         let path = path_of(&line(circle(), true));
         assert!(path.is_closed() && path.points().len() <= 12, "{path:?}");
-        assert!(path.points().iter().all(|p| !p.is_on));
+        assert!(path.points().iter().all(|p| !p.is_on()));
         for p in path.flattened(0.05) {
             let away = math::hypot(p.x - 50.0, p.y - 50.0) - 40.0;
             assert!(away.abs() < 0.6, "{away} px off at {p:?}");

@@ -17,7 +17,9 @@ use strokefit::engines::{DrawRequest, Engine};
 use strokefit::image::Image;
 use strokefit::math;
 use strokefit::metrics;
-use strokefit::scene::{self, Area, Axis, Cap, PathPoint, Scene, Shade, ShadeStop, Stage, Stroke};
+use strokefit::scene::{
+    self, Area, Axis, Cap, PathPoint, PointKind, Scene, Shade, ShadeStop, Stage, Stroke,
+};
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -146,7 +148,7 @@ fn capsule(a: [f32; 2], b: [f32; 2], width: f32) -> Stroke {
 fn bent(points: &[(f32, f32, bool)], closed: bool, width: f32, opacity: f32) -> Stroke {
     let point = |&(x, y, is_on): &(f32, f32, bool)| PathPoint {
         at: math::point([x, y]),
-        is_on,
+        kind: PointKind::on_if(is_on),
     };
     let points = points.iter().map(point).collect();
     Stroke {

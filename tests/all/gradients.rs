@@ -7,6 +7,7 @@ use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
 use strokefit::render::{PARAMS, STYLE};
+use strokefit::scene::PointKind;
 use strokefit::{rng, scene};
 
 /// The step of a central difference, and the error that it is good for.
@@ -36,7 +37,7 @@ fn stroke(seed: u64, i: u64, size: f64) -> Stroke {
     let value = |k| draw(seed, i, k);
     Stroke {
         points: vec![[place(0), place(1)], [place(2), place(3)]],
-        off: vec![false; 2],
+        kinds: vec![PointKind::On; 2],
         closed: false,
         rings: Vec::new(),
         radius: 0.2 + 2.0 * value(4),
@@ -68,7 +69,7 @@ fn of_paths() -> Vec<(String, Scene)> {
         let points = path.points();
         let kind = Stroke {
             points: points.iter().map(|p| [p.at.x, p.at.y]).collect(),
-            off: points.iter().map(|p| !p.is_on).collect(),
+            kinds: points.iter().map(|p| p.kind).collect(),
             closed: path.is_closed(),
             ..stroke(9, 0, 8.0)
         };
@@ -84,7 +85,7 @@ fn of_areas() -> Vec<(String, Scene)> {
     let case = |rings: Rings| {
         let area = Stroke {
             points: rings.points.iter().map(|p| p.map(f64::from)).collect(),
-            off: rings.off,
+            kinds: rings.kinds,
             rings: rings.ends.iter().map(|&end| end as usize).collect(),
             radius: 0.0,
             ..stroke(9, 0, 8.0)

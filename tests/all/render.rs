@@ -18,7 +18,7 @@ use strokefit::render::{
     Survey,
 };
 use strokefit::rng::draw;
-use strokefit::scene::{Cap, Path, PathPoint, Scene, Stage, Stroke};
+use strokefit::scene::{Cap, Path, PathPoint, PointKind, Scene, Stage, Stroke};
 use strokefit::svg::{self, WriteOptions};
 
 /// ε of the fast renderer's distances, px².
@@ -179,7 +179,7 @@ fn push_area(
     let [red, green, blue] = color;
     strokes.push(StrokeRef {
         points: &rings.points,
-        off: &rings.off,
+        kinds: &rings.kinds,
         closed: true,
         rings: &rings.ends,
         form: None,
@@ -221,7 +221,7 @@ fn random_areas(seed: u64, width: usize, height: usize, count: usize) -> Case {
         let mut rings = Rings {
             name: String::new(),
             points: Vec::new(),
-            off: Vec::new(),
+            kinds: Vec::new(),
             ends: Vec::new(),
         };
         for ring in 0..1 + (3.0 * u(i, 0)) as u64 {
@@ -229,7 +229,7 @@ fn random_areas(seed: u64, width: usize, height: usize, count: usize) -> Case {
                 let [x, y] = other.points[0];
                 let at = [0, 1].map(|axis| 50.0 * (u(i, 10 + 3 * k + axis) - 0.5));
                 rings.points.push([x + at[0], y + at[1]]);
-                rings.off.push(u(i, 12 + 3 * k) < 0.4);
+                rings.kinds.push(PointKind::on_if(u(i, 12 + 3 * k) >= 0.4));
             }
             rings.ends.push(rings.points.len() as u32);
         }
@@ -252,7 +252,7 @@ fn long(radius: f32, opacity: f32) -> Case {
         }
         Some(PathPoint {
             at: math::point([at[0], at[1]]),
-            is_on: i == 0 || i == 999 || u(i, 2) > -0.2,
+            kind: PointKind::on_if(i == 0 || i == 999 || u(i, 2) > -0.2),
         })
     });
     let stroke = Stroke {
@@ -307,7 +307,7 @@ fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Case {
             let is_end = !closed && (k == 0 || k == points - 1) || points == 1;
             PathPoint {
                 at: math::point([x + at[0], y + at[1]]),
-                is_on: is_end || u(i, 5 + 3 * k as u64) < 0.5,
+                kind: PointKind::on_if(is_end || u(i, 5 + 3 * k as u64) < 0.5),
             }
         };
         Stroke {
@@ -480,7 +480,7 @@ fn an_area_of_65_535_points_is_the_oracles() {
     let rings = Rings {
         name: String::new(),
         points: (0..65_535).map(place).collect(),
-        off: vec![false; 65_535],
+        kinds: vec![PointKind::On; 65_535],
         ends: vec![65_535],
     };
     let mut case = Case::new("65,535 points", SIZE, Strokes::new());
@@ -646,7 +646,7 @@ proptest! {
         let between = [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
         let mut cut = whole.clone();
         cut.strokes = Strokes::new();
-        cut.strokes.push(StrokeRef { points: &[a, between, b], off: &[false; 3], ..stroke });
+        cut.strokes.push(StrokeRef { points: &[a, between, b], kinds: &[PointKind::On; 3], ..stroke });
         let [whole, cut] = [whole, cut].map(|case| fast_image(&case, Simd::Auto, smoothstep(1.5)));
         for (x, y) in whole.planes().iter().flatten().zip(cut.planes().iter().flatten()) {
             prop_assert!((x - y).abs() < 1e-3, "{x} {y}");
@@ -667,7 +667,7 @@ proptest! {
         let points = points.iter().enumerate().map(|(i, &(dx, dy, is_on))| {
             let (sin, cos) = (i as f32 / count * std::f32::consts::TAU).sin_cos();
             let [u, v] = if is_round { [cos + 0.2 * dx, sin + 0.2 * dy] } else { [dx, dy] };
-            PathPoint { at: math::point([60.0 + x * u, 60.0 + y * v]), is_on }
+            PathPoint { at: math::point([60.0 + x * u, 60.0 + y * v]), kind: PointKind::on_if(is_on) }
         });
         let path = Path::new(points.collect(), true).unwrap();
         let stroke = Stroke { path, radius: radius.into(), cap: Cap::Round, color: [0.0; 3], opacity: 1.0 };
@@ -724,7 +724,7 @@ fn polylines(case: &Case, survey: &Survey) -> reference::Scene {
         let vertices = survey.firsts[i] as usize..survey.firsts[i + 1] as usize;
         let places = survey.vertices[vertices].iter();
         stroke.points = places.map(|v| v.map(f64::from)).collect();
-        stroke.off = vec![false; stroke.points.len()];
+        stroke.kinds = vec![PointKind::On; stroke.points.len()];
         stroke.closed = false;
     }
     scene
@@ -796,7 +796,7 @@ fn stiffness_is_an_upper_bound() {
     for case in [random_paths(5, 40, 36, 4), along_borders()] {
         let mut straight = naive(&case);
         for stroke in &mut straight.strokes {
-            stroke.off.fill(false);
+            stroke.kinds.fill(PointKind::On);
             stroke.closed = false;
         }
         let stiffness = oracle.stiffness(&straight);

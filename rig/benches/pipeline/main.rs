@@ -34,7 +34,7 @@ use strokefit::optim::{Adam, AdamParams};
 use strokefit::render::{
     Backdrop, Canvas, Gradients, PARAMS, Renderer, StrokeRef, Strokes, flattened,
 };
-use strokefit::scene::{Scene, Stage};
+use strokefit::scene::{PointKind, Scene, Stage};
 use strokefit::seed::{Pyramid, Residual, Wanted, propose};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify;
@@ -187,7 +187,7 @@ fn settled(name: &str, points: Option<usize>, image: &Image) -> (String, Strokes
         let points = flattened(path);
         strokes.push(StrokeRef {
             points: &points,
-            off: &vec![false; points.len()],
+            kinds: &vec![PointKind::On; points.len()],
             closed: false,
             rings: &[],
             form: None,

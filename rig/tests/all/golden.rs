@@ -12,6 +12,7 @@ use strokefit::loss::Loss;
 use strokefit::optim::{Adam, AdamParams};
 use strokefit::render::reference::{Gradients, Reference, Rgb, Scene, Stroke};
 use strokefit::render::{OPACITY, PARAMS};
+use strokefit::scene::PointKind;
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -71,7 +72,7 @@ impl Params {
         (0..self.r.len())
             .map(|i| Stroke {
                 points: vec![turned(self.a[i]), turned(self.b[i])],
-                off: vec![false; 2],
+                kinds: vec![PointKind::On; 2],
                 closed: false,
                 rings: Vec::new(),
                 radius: self.r[i],

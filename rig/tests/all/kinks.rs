@@ -12,6 +12,7 @@ use strokefit::render::{
     Backdrop, Canvas, Gradients, Grid, Params, Renderer, STYLE, Softness, StrokeRef, Strokes,
 };
 use strokefit::rng;
+use strokefit::scene::PointKind;
 
 /// Gradients and contributions in `f32` may differ from `f64` by this share of the largest of their kind.
 const WITHIN: f64 = 1e-3;
@@ -243,10 +244,10 @@ fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Strokes
         let at = |k: u64| [x + spread * u(3 * k + 1), y + spread * u(3 * k + 2)];
         let is_off = |k: u64| (closed || !k.is_multiple_of(last)) && u(3 * k + 3) < 0.0;
         let points: Vec<[f32; 2]> = (0..=last).map(at).collect();
-        let off: Vec<bool> = (0..=last).map(is_off).collect();
+        let kinds: Vec<PointKind> = (0..=last).map(|k| PointKind::on_if(!is_off(k))).collect();
         strokes.push(StrokeRef {
             points: &points,
-            off: &off,
+            kinds: &kinds,
             closed,
             ..capsule
         });
@@ -389,7 +390,10 @@ fn gradients_at_kinks_of_paths_lie_between_the_slopes_of_both_sides() {
     for (name, points, off, closed, bounds) in bends {
         let page = around(StrokeRef {
             points,
-            off,
+            kinds: &off
+                .iter()
+                .map(|off| PointKind::on_if(!off))
+                .collect::<Vec<_>>(),
             closed,
             rings: &[],
             form: None,

@@ -4,7 +4,7 @@ use crate::fit::config::{Config, DEFAULT_QUALITY};
 use crate::fit::drawing::Drawing;
 use crate::math;
 use crate::render::{Params, StrokeRef, Strokes};
-use crate::scene::Mark;
+use crate::scene::{Mark, PointKind};
 use crate::svg::{Form, WriteOptions, mark_bytes};
 
 /// The price of strokes and points, as squared error summed over pixels and channels.
@@ -202,7 +202,7 @@ impl Price {
         let bytes = |points: &[[f32; 2]]| {
             self.bytes_of(StrokeRef {
                 points,
-                off: &[false; 3][..points.len()],
+                kinds: &[PointKind::On; 3][..points.len()],
                 closed: false,
                 rings: &[],
                 form: None,

@@ -4,7 +4,7 @@
 
 use crate::math;
 use crate::render::{Form, StrokeRef, Strokes};
-use crate::scene::{Band, Cap, Path, PathPoint, Stroke};
+use crate::scene::{Band, Cap, Path, PathPoint, PointKind, Stroke};
 
 /// The forms among the free strokes of a drawing.
 #[derive(Debug, Clone, Default)]
@@ -141,7 +141,8 @@ fn equal(path: StrokeRef<'_>, start: usize) -> Places {
     for axis in 0..2 {
         let is_along = |i: usize| {
             let next = (i + 1) % count;
-            let is_line = !path.off[i] && !path.off[next] && (path.closed || next > 0);
+            let is_line = [path.kinds[i], path.kinds[next]] == [PointKind::On; 2]
+                && (path.closed || next > 0);
             is_line && path.points[i][axis] == path.points[next][axis]
         };
         // Lines along this axis share the coordinate. A closed path is walked from the end of a run of them, so that none is cut.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::{Change, Edit, written_points};
 use crate::math::distance;
 use crate::render::{STYLE, StrokeRef, Strokes};
+use crate::scene::PointKind;
 
 /// Farthest that two ends may be apart, px.
 const REACH: f32 = 8.0;
@@ -126,11 +127,11 @@ fn end(stroke: StrokeRef<'_>, is_end: bool) -> [f32; 2] {
 fn joined(strokes: &Strokes, pair: Pair) -> Change {
     let points = |i: usize, is_reversed: bool| {
         let stroke = strokes.get(i);
-        let mut points: Vec<([f32; 2], bool)> = stroke
+        let mut points: Vec<([f32; 2], PointKind)> = stroke
             .points
             .iter()
             .copied()
-            .zip(stroke.off.iter().copied())
+            .zip(stroke.kinds.iter().copied())
             .collect();
         if is_reversed {
             points.reverse();
@@ -153,10 +154,10 @@ fn joined(strokes: &Strokes, pair: Pair) -> Change {
     let share = other / (weight + other).max(f32::MIN_POSITIVE);
     let style: [f32; STYLE] =
         std::array::from_fn(|k| a.style[k] + share * (b.style[k] - a.style[k]));
-    let (points, off): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    let (points, kinds): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     let stroke = StrokeRef {
         points: &points,
-        off: &off,
+        kinds: &kinds,
         closed: false,
         rings: &[],
         form: None,

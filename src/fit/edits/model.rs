@@ -44,7 +44,8 @@ pub(super) struct Cut {
 
 impl<'a> QuadraticModel<'a> {
     /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. The points of a band
-    /// come and go in pairs, so bands have none.
+    /// come and go in pairs, so bands have none; nor have paths with cubic curves or arcs, whose points stay as many and of their
+    /// kinds.
     pub(in crate::fit) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
         let of_mark = |mark: usize| {
             let stroke = strokes.get(mark);
@@ -52,12 +53,13 @@ impl<'a> QuadraticModel<'a> {
             let mut first = survey.firsts[mark] as usize;
             let is_fit = stroke.is_finite() && stroke.form != Some(Form::Band);
             let paths = stroke.paths().enumerate().filter(move |_| is_fit);
-            paths.map(move |(path, (_, points))| {
+            let paths = paths.map(move |(path, (_, points))| {
                 let model = Self::new(survey, points, (mark, path, stroke.is_area()), first);
                 // Between rings is a vertex that no segment has.
                 first += model.vertices.len() + 1;
                 model
-            })
+            });
+            paths.filter(|model| !model.stroke.is_mixed())
         };
         let marks = (0..strokes.len()).into_par_iter();
         marks.flat_map_iter(of_mark).collect()

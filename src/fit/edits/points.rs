@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::model::{Cut, QuadraticModel};
 use super::{Change, Edit};
 use crate::render::{Knot, Piece, StrokeRef};
+use crate::scene::PointKind;
 
 /// Farthest that a new corner moves from its line at once, in units of the line's length.
 const REACH: f32 = 0.5;
@@ -17,21 +18,21 @@ const SMOOTHNESS: f32 = 0.7;
 #[derive(Debug, Clone)]
 struct Changed {
     points: Vec<[f32; 2]>,
-    off: Vec<bool>,
+    kinds: Vec<PointKind>,
 }
 
 impl Changed {
     fn of(path: StrokeRef<'_>) -> Self {
         Self {
             points: path.points.to_vec(),
-            off: path.off.to_vec(),
+            kinds: path.kinds.to_vec(),
         }
     }
 
     fn on<'a>(&'a self, path: StrokeRef<'a>) -> StrokeRef<'a> {
         StrokeRef {
             points: &self.points,
-            off: &self.off,
+            kinds: &self.kinds,
             form: None,
             ..path
         }
@@ -39,13 +40,13 @@ impl Changed {
 
     fn remove(&mut self, k: usize) {
         self.points.remove(k);
-        self.off.remove(k);
+        self.kinds.remove(k);
     }
 
     /// True if the points make a path.
     fn is_path(&self, closed: bool) -> bool {
-        let is_on = |end: Option<&bool>| end == Some(&false);
-        closed || (is_on(self.off.first()) && is_on(self.off.last()))
+        let is_on = |end: Option<&PointKind>| end == Some(&PointKind::On);
+        closed || (is_on(self.kinds.first()) && is_on(self.kinds.last()))
     }
 
     /// The edit that `gain`s this much.
@@ -54,7 +55,7 @@ impl Changed {
         let change = Change::Path {
             index: model.path,
             points: self.points,
-            off: self.off,
+            kinds: self.kinds,
         };
         Edit {
             changes: vec![(model.mark, change)],
@@ -83,7 +84,7 @@ struct Insertion {
 pub(in crate::fit) fn add(model: &QuadraticModel<'_>, to_add: f32) -> Option<Edit> {
     let within = |(i, &cut): (usize, &Cut)| {
         let chord = Chord::of(model, cut.piece).filter(|chord| chord.length > SHORTEST);
-        let insertions = chord.map(|chord| match cut.piece.control {
+        let insertions = chord.map(|chord| match cut.piece.control() {
             None => within_line(model, cut, chord),
             Some(control) => [within_curve(model, i, control, chord), None],
         });
@@ -99,7 +100,9 @@ pub(in crate::fit) fn add(model: &QuadraticModel<'_>, to_add: f32) -> Option<Edi
         changed.points[k] = to;
     }
     changed.points.insert(best.place, best.at);
-    changed.off.insert(best.place, best.is_off);
+    changed
+        .kinds
+        .insert(best.place, PointKind::on_if(!best.is_off));
     Some(changed.edit(model, best.gain, -to_add))
 }
 
@@ -115,8 +118,8 @@ pub(in crate::fit) fn remove(model: &QuadraticModel<'_>, to_keep: f32) -> Option
 /// The point less that costs least; it spares `to_keep`. An end may move: a curve that turns back beside it ends where it
 /// turned.
 pub(in crate::fit) fn drop(model: &QuadraticModel<'_>, to_keep: f32) -> Option<Edit> {
-    let StrokeRef { off, closed, .. } = model.stroke;
-    let count = off.len();
+    let StrokeRef { kinds, closed, .. } = model.stroke;
+    let count = kinds.len();
     if count < 3 {
         return None;
     }
@@ -124,7 +127,9 @@ pub(in crate::fit) fn drop(model: &QuadraticModel<'_>, to_keep: f32) -> Option<E
     // the end moves to where the curve was farthest out.
     let removal = remove(model, to_keep);
     let retraction = |(k, end): (usize, usize)| {
-        let tip = model.tip(end).filter(|_| off[k] && !closed)?;
+        let tip = model
+            .tip(end)
+            .filter(|_| kinds[k] == PointKind::Quad && !closed)?;
         best_change(model, k..k + 1, to_keep, |changed, k| {
             changed.points[end] = tip;
             changed.remove(k);
@@ -141,7 +146,7 @@ pub(in crate::fit) fn drop(model: &QuadraticModel<'_>, to_keep: f32) -> Option<E
 pub(in crate::fit) fn toggle(model: &QuadraticModel<'_>, to_change: f32) -> Option<Edit> {
     let StrokeRef {
         points,
-        off,
+        kinds,
         closed,
         ..
     } = model.stroke;
@@ -154,16 +159,16 @@ pub(in crate::fit) fn toggle(model: &QuadraticModel<'_>, to_change: f32) -> Opti
         // The curve through the point runs from a to b. Beside a control point it ends halfway; for a corner that becomes smooth,
         // this halfway place is an estimate, as the new control point moves it.
         let neighbours = [(k + count - 1) % count, (k + 1) % count];
-        let [a, b] = neighbours.map(|i| match off[i] {
+        let [a, b] = neighbours.map(|i| match kinds[i] == PointKind::Quad {
             true => [0, 1].map(|axis| 0.5 * (points[i][axis] + points[k][axis])),
             false => points[i],
         });
         // A quadratic curve is farthest from its chord at a quarter of its ends and half of its control point.
-        changed.points[k] = [0, 1].map(|axis| match off[k] {
+        changed.points[k] = [0, 1].map(|axis| match kinds[k] == PointKind::Quad {
             true => 0.25 * (a[axis] + b[axis]) + 0.5 * points[k][axis],
             false => 2.0 * points[k][axis] - 0.5 * (a[axis] + b[axis]),
         });
-        changed.off[k] = !off[k];
+        changed.kinds[k] = PointKind::on_if(kinds[k] != PointKind::On);
     })
 }
 

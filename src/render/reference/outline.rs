@@ -7,9 +7,10 @@
 //! area      d = +min |p − s| over the segments s where the winding number of p is not 0,  −min |p − s| elsewhere
 //! ```
 //!
-//! **Vertices.** The points of a path are **on** it or **off** it, as [`scene::Path`](crate::scene::Path) says. Each of its
-//! quadratic curves becomes segments at equal steps of the curve's parameter, as many as [`steps`] says. A vertex is a
-//! weighted mean of points, so the derivative by a point is the sum of the derivatives by the vertices times their weights.
+//! **Vertices.** The points of a path are of the kinds that [`scene::Path`](crate::scene::Path) has. Each of its
+//! Bézier curves becomes segments at equal steps of the curve's parameter, as many as [`steps`] says. A vertex is a
+//! weighted mean of points, so the derivative by a point is the sum of the derivatives by the vertices times their weights. For
+//! the vertices of arcs see [`arcs`].
 //!
 //! **Derivatives.** With `u = q / √(|q|² + ε)`, by the chain rule through `h`:
 //!
@@ -35,11 +36,16 @@
 
 use kurbo::{Point, Vec2};
 
+use super::super::arcs::{self, Spread};
 use super::super::strokes::steps;
+use crate::scene::{Arc, PointKind};
 
 /// A vertex as a weighted mean of points: their indices and weights, which sum to 1.
+///
+/// For a vertex of an arc, these are the derivatives of its place by points, complex numbers: a turn and a factor. Their real
+/// parts sum to 1, and their imaginary parts to 0.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::render) struct Mean(pub(in crate::render) Vec<(usize, f64)>);
+pub(in crate::render) struct Mean(pub(in crate::render) Vec<(usize, Vec2)>);
 
 /// Vertices joined by line segments: a path swept by a disc, or an area within contours.
 #[derive(Debug, Clone, Default)]
@@ -77,7 +83,7 @@ impl Outline {
         for &end in ends {
             let contour = Knots {
                 points: &knots.points[start..end],
-                off: &knots.off[start..end],
+                kinds: &knots.kinds[start..end],
                 closed: true,
             };
             area.add(contour, start, flatness);
@@ -89,8 +95,8 @@ impl Outline {
     /// Adds a flattened path whose points are those from `first` on.
     fn add(&mut self, knots: Knots<'_>, first: usize, flatness: f64) {
         let start = self.vertices.len();
-        for mean in knots.flattened(flatness) {
-            self.vertices.push(mean.place(knots.points));
+        for (place, mean) in knots.flattened(flatness) {
+            self.vertices.push(place);
             let parts = mean.0.into_iter().map(|(i, weight)| (first + i, weight));
             self.means.push(Mean(parts.collect()));
         }
@@ -198,50 +204,91 @@ fn length(q: Vec2, eps: f64) -> f64 {
 pub(super) struct Knots<'a> {
     /// px, at least one.
     pub(super) points: &'a [[f64; 2]],
-    /// True for a point off the path. The ends of an open path are on it.
-    pub(super) off: &'a [bool],
+    /// The ends of an open path are on it.
+    pub(super) kinds: &'a [PointKind],
     /// True if the last point is joined to the first.
     pub(super) closed: bool,
 }
 
 impl Knots<'_> {
     /// The vertices of segments that keep within `flatness` of the path, px. The vertices of a closed path end where they start.
-    fn flattened(self, flatness: f64) -> Vec<Mean> {
+    fn flattened(self, flatness: f64) -> Vec<(Point, Mean)> {
         let knots = self.with_implied();
-        let mut means = vec![knots[0].0.clone()];
+        let placed = |mean: Mean| (mean.place(self.points), mean);
+        let mut vertices = vec![placed(knots[0].0.clone())];
         let mut at = 1;
         while at < knots.len() {
-            let from = &knots[at - 1].0;
-            if knots[at].1 {
-                let (control, to) = (&knots[at].0, &knots[at + 1].0);
-                let [a, b, c] = [from, control, to].map(|mean| mean.place(self.points).to_vec2());
-                // Each curve has one control point between two points on the path, so it takes two knots.
-                let steps = steps((a - b * 2.0 + c).hypot(), flatness);
-                let curve = |k: usize| bernstein([from, control, to], k as f64 / steps as f64);
-                means.extend((1..=steps).map(curve));
-                at += 2;
-            } else {
-                means.push(knots[at].0.clone());
-                at += 1;
-            }
+            let mean = |ahead: usize| &knots[at + ahead - 1].0;
+            let place = |ahead: usize| mean(ahead).place(self.points).to_vec2();
+            let bend =
+                |first: usize| (place(first) - place(first + 1) * 2.0 + place(first + 2)).hypot();
+            at += match knots[at].1 {
+                PointKind::On => {
+                    vertices.push(placed(mean(1).clone()));
+                    1
+                }
+                // Each curve has its control points between two points on the path.
+                PointKind::Quad => {
+                    let steps = steps(bend(0), flatness);
+                    let curve = |k: usize| {
+                        let t = k as f64 / steps as f64;
+                        let s = 1.0 - t;
+                        weighted([(mean(0), s * s), (mean(1), 2.0 * s * t), (mean(2), t * t)])
+                    };
+                    vertices.extend((1..=steps).map(curve).map(placed));
+                    2
+                }
+                PointKind::Cubic => {
+                    let steps = steps(3.0 * bend(0).max(bend(1)), flatness);
+                    let curve = |k: usize| {
+                        let t = k as f64 / steps as f64;
+                        let s = 1.0 - t;
+                        let [of_c, of_d] = [3.0 * s * s * t, 3.0 * s * t * t];
+                        let ends = [(mean(0), s * s * s), (mean(3), t * t * t)];
+                        weighted([ends[0], (mean(1), of_c), (mean(2), of_d), ends[1]])
+                    };
+                    vertices.extend((1..=steps).map(curve).map(placed));
+                    3
+                }
+                PointKind::Arc => {
+                    let [from, through, to] = [0, 1, 2].map(|ahead| place(ahead).to_point());
+                    let arc = Arc { from, through, to };
+                    let Some(spread) = Spread::of(&arc, flatness, 1) else {
+                        vertices.push(placed(mean(2).clone()));
+                        at += 2;
+                        continue;
+                    };
+                    vertices.extend(spread.weights().map(|weights| {
+                        let ends = [mean(0), mean(1), mean(2)].into_iter();
+                        let parts = ends.zip(arcs::slopes(&arc, weights));
+                        let parts = parts.map(|(mean, slope)| (mean.0[0].0, slope));
+                        let place = arcs::vertex(&arc, weights).to_point();
+                        (place, Mean(parts.collect()))
+                    }));
+                    2
+                }
+            };
         }
-        means
+        vertices
     }
 
-    /// The points with all implied ones, each with whether it is off the path. The first and the last are on it.
-    fn with_implied(self) -> Vec<(Mean, bool)> {
+    /// The points with all implied ones, each with its kind. The first and the last are on the path.
+    fn with_implied(self) -> Vec<(Mean, PointKind)> {
         let count = self.points.len();
+        let weight = |weight: f64| Vec2::new(weight, 0.0);
         let mut knots = Vec::new();
         for i in 0..count {
             let before = (i + count - 1) % count;
-            // Two points off the path in a row imply one on it, halfway between.
-            if self.off[i] && self.off[before] {
-                knots.push((Mean(vec![(before, 0.5), (i, 0.5)]), false));
+            // Two control points of quadratic curves in a row imply a point on the path, halfway between.
+            if [self.kinds[i], self.kinds[before]] == [PointKind::Quad; 2] {
+                let both = vec![(before, weight(0.5)), (i, weight(0.5))];
+                knots.push((Mean(both), PointKind::On));
             }
-            knots.push((Mean(vec![(i, 1.0)]), self.off[i]));
+            knots.push((Mean(vec![(i, weight(1.0))]), self.kinds[i]));
         }
         if self.closed && count > 1 {
-            let is_point = |knot: &(Mean, bool)| !knot.1 && knot.0.0.len() == 1;
+            let is_point =
+                |knot: &(Mean, PointKind)| knot.1 == PointKind::On && knot.0.0.len() == 1;
             // Start at the first point that is on the path, and end there, as the fast renderer does, since ties go to the first
             // segment.
             let start = knots.iter().position(is_point).unwrap_or(0);
@@ -253,16 +300,17 @@ impl Knots<'_> {
 }
 
 impl Mean {
-    /// The point of the vertex.
+    /// The point of a vertex that is a mean.
     fn place(&self, points: &[[f64; 2]]) -> Point {
-        let sum = |sum: Vec2, &(i, weight): &(usize, f64)| sum + vector(points[i]) * weight;
+        let sum = |sum: Vec2, &(i, weight): &(usize, Vec2)| sum + vector(points[i]) * weight.x;
         self.0.iter().fold(Vec2::ZERO, sum).to_point()
     }
 
     /// Adds the share of each point in the derivative `by` this vertex.
     pub(super) fn hand_back(&self, by: Vec2, by_points: &mut [Vec2]) {
         for &(i, weight) in &self.0 {
-            by_points[i] += by * weight;
+            // The transpose of a turn turns the other way; without a turn this is the product with the weight.
+            by_points[i] += by * weight.x - by.turn_90() * weight.y;
         }
     }
 }
@@ -271,10 +319,8 @@ fn vector([x, y]: [f64; 2]) -> Vec2 {
     Vec2::new(x, y)
 }
 
-/// The vertex at the parameter `t` of a curve.
-fn bernstein([from, control, to]: [&Mean; 3], t: f64) -> Mean {
-    let s = 1.0 - t;
-    let parts = [(from, s * s), (control, 2.0 * s * t), (to, t * t)];
+/// The mean of these means by their weights.
+fn weighted<const N: usize>(parts: [(&Mean, f64); N]) -> Mean {
     let weighted =
         parts.map(|(mean, share)| mean.0.iter().map(move |&(i, weight)| (i, weight * share)));
     Mean(weighted.into_iter().flatten().collect())
@@ -295,7 +341,10 @@ mod tests {
     fn path(points: &[[f64; 2]], off: &[bool], closed: bool) -> Outline {
         let knots = Knots {
             points,
-            off,
+            kinds: &off
+                .iter()
+                .map(|off| PointKind::on_if(!off))
+                .collect::<Vec<_>>(),
             closed,
         };
         Outline::path(knots, 1.5, FLATNESS)
@@ -309,7 +358,7 @@ mod tests {
         let points = contours.concat();
         let knots = Knots {
             points: &points,
-            off: &vec![false; points.len()],
+            kinds: &vec![PointKind::On; points.len()],
             closed: true,
         };
         Outline::area(knots, &ends.collect::<Vec<_>>(), FLATNESS)
@@ -414,8 +463,11 @@ mod tests {
             let off: Vec<bool> = (0..5).map(is_off).collect();
             let path = path(&points, &off, closed);
             for Mean(parts) in &path.means {
-                let sum: f64 = parts.iter().map(|(_, weight)| weight).sum();
-                assert!((sum - 1.0).abs() < 1e-12 && parts.iter().all(|(_, w)| *w >= 0.0));
+                let sum: f64 = parts.iter().map(|(_, weight)| weight.x).sum();
+                assert!(
+                    (sum - 1.0).abs() < 1e-12
+                        && parts.iter().all(|(_, w)| w.x >= 0.0 && w.y == 0.0)
+                );
             }
             let (first, last) = (path.vertices[0], path.vertices[path.vertices.len() - 1]);
             let [start, end] = if closed {

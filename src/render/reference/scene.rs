@@ -3,7 +3,7 @@
 use kurbo::Point;
 
 use super::outline::{Knots, Outline};
-use crate::scene;
+use crate::scene::{self, PointKind};
 
 use super::super::paint::Paint;
 use super::super::strokes::{PARAMS, STYLE, StrokeRef, Strokes, flatness};
@@ -16,8 +16,8 @@ pub type Rgb = [f64; 3];
 pub struct Stroke {
     /// The points of the centre line, px: x, y.
     pub points: Vec<[f64; 2]>,
-    /// For each point, true if it is off the path, the control point of a curve.
-    pub off: Vec<bool>,
+    /// The kind of each point.
+    pub kinds: Vec<PointKind>,
     /// True if the last point is joined to the first.
     pub closed: bool,
     /// For an area, the index behind the last point of each of its rings; none for a stroke.
@@ -37,7 +37,7 @@ impl Stroke {
     pub fn capsule([ax, ay, bx, by, radius, red, green, blue, opacity]: [f64; PARAMS]) -> Self {
         Self {
             points: vec![[ax, ay], [bx, by]],
-            off: vec![false; 2],
+            kinds: vec![PointKind::On; 2],
             closed: false,
             rings: Vec::new(),
             radius,
@@ -82,7 +82,7 @@ impl Stroke {
     pub(in crate::render) fn outline(&self) -> Outline {
         let knots = Knots {
             points: &self.points,
-            off: &self.off,
+            kinds: &self.kinds,
             closed: self.closed,
         };
         let flatness = f64::from(flatness(self.opacity as f32));
@@ -129,7 +129,7 @@ impl From<StrokeRef<'_>> for Stroke {
     fn from(stroke: StrokeRef<'_>) -> Self {
         Self {
             points: stroke.points.iter().map(|p| p.map(f64::from)).collect(),
-            off: stroke.off.to_vec(),
+            kinds: stroke.kinds.to_vec(),
             closed: stroke.closed,
             rings: stroke.rings.iter().map(|&end| end as usize).collect(),
             radius: f64::from(stroke.radius()),
@@ -150,13 +150,15 @@ mod tests {
         assert_eq!(Stroke::capsule(params).to_params(), params);
         let spline = Stroke {
             points: vec![[0.0; 2]; 5],
-            off: vec![true, false, true, true, false],
+            kinds: [false, true, false, false, true]
+                .map(PointKind::on_if)
+                .to_vec(),
             closed: true,
             ..Stroke::default()
         };
         let params: Vec<f64> = (0..15).map(f64::from).collect();
         let moved = spline.with_params(&params);
         assert_eq!(moved.to_params(), params);
-        assert_eq!((&moved.off, moved.closed), (&spline.off, true));
+        assert_eq!((&moved.kinds, moved.closed), (&spline.kinds, true));
     }
 }

@@ -4,12 +4,12 @@ use proptest::prelude::*;
 
 use crate::math::{self, Point, Vec2};
 use crate::scene::{
-    Area, Axis, Cap, MAX_STOPS, Mark, Path, PathPoint, Scene, Shade, ShadeStop, Shape, Stage,
-    Stroke,
+    Arc, Area, Axis, Cap, MAX_STOPS, Mark, Path, PathPoint, PointKind, Scene, Shade, ShadeStop,
+    Shape, Stage, Stroke,
 };
 use crate::svg::{Form, Group, WriteOptions};
 
-fn point() -> impl Strategy<Value = Point> {
+fn point() -> impl Strategy<Value = Point> + Clone + 'static {
     let coordinate = prop_oneof![-20.0..120.0_f64, 0.0..0.02_f64, Just(50.0), -1e6..1e6_f64];
     (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y))
 }
@@ -46,21 +46,74 @@ fn ring_of_shape() -> impl Strategy<Value = Path> {
 }
 
 /// Places among which many coincide, or lie halfway between others, once they are rounded.
-fn close_point() -> impl Strategy<Value = Point> {
+fn close_point() -> impl Strategy<Value = Point> + Clone + 'static {
     let coordinate = || prop_oneof![(0..5_u8).prop_map(f64::from), 0.0..4.0_f64];
     (coordinate(), coordinate()).prop_map(|(x, y)| Point::new(x, y))
 }
 
 /// Paths of all kinds of points, open and closed.
-fn path(point: impl Strategy<Value = Point>) -> impl Strategy<Value = Path> {
+fn path(point: impl Strategy<Value = Point> + Clone + 'static) -> impl Strategy<Value = Path> {
+    prop_oneof![
+        2 => quadratic_path(point.clone()),
+        1 => (mixed_points(point), any::<bool>()).prop_map(|(mut points, closed)| {
+            // An open path ends on the path.
+            let last = points.iter().rposition(PathPoint::is_on).unwrap();
+            points.truncate(if closed { points.len() } else { last + 1 });
+            Path::new(points, closed).unwrap()
+        }),
+    ]
+}
+
+/// On-points, each followed by nothing, or by what makes a curve or an arc to the next one.
+fn mixed_points(
+    point: impl Strategy<Value = Point> + 'static,
+) -> impl Strategy<Value = Vec<PathPoint>> {
+    // On few grids the point of an arc is halfway, so that some arcs are half circles.
+    let bulge = prop_oneof![
+        -3.0..3.0_f64,
+        Just(1.0),
+        Just(-1.0),
+        0.99..1.01_f64,
+        -0.01..0.01_f64
+    ];
+    let piece = (prop::array::uniform3(point), 0..5_u8, bulge);
+    prop::collection::vec(piece, 1..7).prop_map(|pieces| {
+        let ends = pieces.iter().cycle().skip(1).map(|([end, ..], ..)| *end);
+        let points = pieces.iter().zip(ends);
+        let points = points.flat_map(|(&([start, p, q], kind, bulge), end)| {
+            let between = match kind {
+                0 => vec![],
+                1 => vec![PathPoint::off(p), PathPoint::off(q)],
+                2 => [p, q].map(PathPoint::cubic).to_vec(),
+                3 => vec![PathPoint::arc(p)],
+                _ => vec![PathPoint::arc(Arc::of_bulge([start, end], bulge).through)],
+            };
+            [vec![PathPoint::on(start)], between].concat()
+        });
+        let points: Vec<PathPoint> = points.collect();
+        // One point alone is on its path.
+        if pieces.len() == 1 && points.len() == 2 {
+            return points[..1].to_vec();
+        }
+        points
+    })
+}
+
+/// Paths of lines and quadratic curves.
+fn quadratic_path(point: impl Strategy<Value = Point>) -> impl Strategy<Value = Path> {
     let points = prop::collection::vec((point, any::<bool>()), 1..9);
     (points, any::<bool>()).prop_map(|(points, closed)| {
-        let point = |(at, is_on)| PathPoint { at, is_on };
+        let point = |(at, is_on)| PathPoint {
+            at,
+            kind: PointKind::on_if(is_on),
+        };
         let mut points: Vec<_> = points.into_iter().map(point).collect();
         // An open path starts and ends on the path.
         let last = points.len() - 1;
-        points[0].is_on |= !closed || last == 0;
-        points[last].is_on |= !closed;
+        if !closed || last == 0 {
+            points[0].kind = PointKind::On;
+            points[last].kind = PointKind::On;
+        }
         Path::new(points, closed).unwrap()
     })
 }
@@ -93,6 +146,9 @@ fn ring() -> impl Strategy<Value = Path> {
     let points = |point: BoxedStrategy<Point>| prop::collection::vec((point, any::<bool>()), 1..9);
     let free = prop_oneof![points(point().boxed()), points(close_point().boxed())];
     let free = free.prop_map(|points| closed(points.into_iter()));
+    let mixed = prop_oneof![mixed_points(point()), mixed_points(close_point())];
+    let free =
+        prop_oneof![2 => free, 1 => mixed.prop_map(|points| Path::new(points, true).unwrap())];
     prop_oneof![1 => free, 2 => round_ring(), 1 => ring_of_shape()]
 }
 
@@ -116,8 +172,15 @@ fn round_ring() -> impl Strategy<Value = Path> {
 
 /// The closed path of these points; one point alone is on it.
 fn closed(points: impl Iterator<Item = (Point, bool)>) -> Path {
-    let mut points: Vec<_> = points.map(|(at, is_on)| PathPoint { at, is_on }).collect();
-    points[0].is_on |= points.len() == 1;
+    let mut points: Vec<_> = points
+        .map(|(at, is_on)| PathPoint {
+            at,
+            kind: PointKind::on_if(is_on),
+        })
+        .collect();
+    if points.len() == 1 {
+        points[0].kind = PointKind::On;
+    }
     Path::new(points, true).unwrap()
 }
 

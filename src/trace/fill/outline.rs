@@ -7,7 +7,7 @@ use super::contour::{Field, Place, resampled};
 use super::corners::{Corner, corners};
 use super::span::{MOST, Sample, Span, fit};
 use crate::math;
-use crate::scene::{Path, PathPoint};
+use crate::scene::{Path, PathPoint, PointKind};
 
 /// Distance of the samples of an outline, px. A guess.
 const STEP: f32 = 0.5;
@@ -70,7 +70,7 @@ pub(super) fn ring<D: Fn(Place, Place) -> f32>(
         .into_iter()
         .map(|(at, is_on)| PathPoint {
             at: math::point(at),
-            is_on,
+            kind: PointKind::on_if(is_on),
         })
         .collect();
     (points.len() > 2).then(|| Path::of_points(points, true))

@@ -2,14 +2,16 @@
 
 use strokefit::math::Point;
 use strokefit::render::Paint;
-use strokefit::scene::{Axis, Shade, ShadeStop};
+use strokefit::scene::{Axis, PointKind, Shade, ShadeStop};
+
+use super::paths::of_letter;
 
 /// The points of an area.
 #[derive(Clone)]
 pub(crate) struct Rings {
     pub(crate) name: String,
     pub(crate) points: Vec<[f32; 2]>,
-    pub(crate) off: Vec<bool>,
+    pub(crate) kinds: Vec<PointKind>,
     /// The index behind the last point of each ring.
     pub(crate) ends: Vec<u32>,
 }
@@ -68,7 +70,7 @@ pub(crate) fn areas(width: f32, height: f32) -> Vec<Rings> {
                 .iter()
                 .map(|&(x, y, _)| [x * width, y * height])
                 .collect(),
-            off: points.iter().map(|&(.., kind)| kind == '~').collect(),
+            kinds: points.iter().map(|&(.., kind)| of_letter(kind)).collect(),
         }
     };
     let a = (0.131, 0.217, 'o');
@@ -87,6 +89,30 @@ pub(crate) fn areas(width: f32, height: f32) -> Vec<Rings> {
         area("a triangle", &[&[a, b, c]]),
         area("a square the other way around", &[&[d, c, b, a]]),
         area("a round shape", &[&[off(a), off(b), off(c), off(d)]]),
+        area(
+            "a shape of all kinds of pieces",
+            &[&[
+                a,
+                (0.531, 0.031, 'a'),
+                b,
+                (0.931, 0.561, 'c'),
+                (0.547, 0.613, 'c'),
+                c,
+                (0.447, 0.931, '~'),
+                d,
+            ]],
+        ),
+        area(
+            "a disc of two arcs with a hole of one",
+            &[
+                &[a, (0.631, 0.031, 'a'), c, (0.171, 0.831, 'a')],
+                &[
+                    (0.431, 0.431, 'o'),
+                    (0.531, 0.571, 'a'),
+                    (0.471, 0.391, 'o'),
+                ],
+            ],
+        ),
         area("a drop", &[&[a, off(b), off(c), off(d)]]),
         area("a hole", &[&[a, b, c, d], &[h, g, f, e]]),
         area(

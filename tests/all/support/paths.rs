@@ -1,14 +1,25 @@
 //! Paths of every kind, each with one kind of trouble.
 
 use strokefit::math;
-use strokefit::scene::{Path, PathPoint};
+use strokefit::scene::{Path, PathPoint, PointKind};
+
+/// The kind of a point: `o` on its path, `~` the control point of a quadratic curve, `c` one of a cubic curve, and `a` of an arc.
+pub(crate) fn of_letter(letter: char) -> PointKind {
+    match letter {
+        'o' => PointKind::On,
+        '~' => PointKind::Quad,
+        'c' => PointKind::Cubic,
+        'a' => PointKind::Arc,
+        _ => panic!("{letter} is no kind of point"),
+    }
+}
 
 /// The paths with their names; they lie in and around a picture of `width`×`height` px.
 pub(crate) fn paths(width: f32, height: f32) -> Vec<(&'static str, Path)> {
     let path = |points: &[(f32, f32, char)], closed: bool| {
         let point = |&(x, y, kind): &(f32, f32, char)| PathPoint {
             at: math::point([x * width, y * height]),
-            is_on: kind == 'o',
+            kind: of_letter(kind),
         };
         Path::new(points.iter().map(point).collect(), closed).unwrap()
     };
@@ -55,6 +66,63 @@ pub(crate) fn paths(width: f32, height: f32) -> Vec<(&'static str, Path)> {
         (
             "control points that coincide",
             path(&[a, off(c), off(c), b], open),
+        ),
+        (
+            "a cubic curve",
+            path(&[a, (0.431, 0.961, 'c'), (0.947, 0.913, 'c'), b], open),
+        ),
+        (
+            "a cubic curve with a loop",
+            path(&[a, (1.031, 0.861, 'c'), (-0.147, 0.913, 'c'), b], open),
+        ),
+        (
+            "a closed path of two cubic curves",
+            path(
+                &[
+                    a,
+                    (0.431, -0.061, 'c'),
+                    (0.847, 0.013, 'c'),
+                    b,
+                    (0.931, 0.761, 'c'),
+                    (0.147, 0.913, 'c'),
+                ],
+                closed,
+            ),
+        ),
+        ("an arc", path(&[a, (0.331, 0.461, 'a'), b], open)),
+        (
+            "an arc the other way",
+            path(&[b, (0.331, 0.461, 'a'), a], open),
+        ),
+        ("a flat arc", path(&[a, (0.477, 0.283, 'a'), b], open)),
+        (
+            "most of a circle",
+            path(&[a, (0.561, 0.781, 'a'), (0.231, 0.117, 'o')], open),
+        ),
+        (
+            "an arc of three points in a row",
+            path(&[a, (0.477, 0.281, 'a'), b, c], open),
+        ),
+        (
+            "two arcs and a line, closed",
+            path(&[a, (0.531, 0.061, 'a'), b, (0.661, 0.661, 'a'), c], closed),
+        ),
+        (
+            "all kinds of pieces",
+            path(
+                &[
+                    a,
+                    (0.231, 0.061, 'a'),
+                    (0.431, 0.161, 'o'),
+                    off(d),
+                    b,
+                    (0.931, 0.761, 'c'),
+                    (0.647, 0.913, 'c'),
+                    c,
+                    (0.131, 0.517, 'o'),
+                ],
+                open,
+            ),
         ),
         ("a curve and a line", path(&[a, off(c), b, d], open)),
         (

@@ -259,7 +259,7 @@ fn straight(session: &Session<'_>) -> Vec<Edit> {
 fn leveled(path: &Path) -> Path {
     let before: Vec<[f64; 2]> = path.points().iter().map(|p| [p.at.x, p.at.y]).collect();
     let (mut after, count) = (before.clone(), before.len());
-    let is_on = |i: usize| path.points()[i].is_on;
+    let is_on = |i: usize| path.points()[i].is_on();
     for axis in 0..2 {
         for i in 0..count {
             let next = (i + 1) % count;

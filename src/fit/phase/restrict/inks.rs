@@ -164,10 +164,7 @@ mod tests {
 
     /// A level line in the middle of the picture, in the colour that the picture has there.
     fn told(picture: &Image, radius: f64, level: f32, y: f64) -> Option<Stroke> {
-        let at = |x: f64| PathPoint {
-            at: Point::new(x, y),
-            is_on: true,
-        };
+        let at = |x: f64| PathPoint::on(Point::new(x, y));
         let stroke = Stroke {
             path: Path::new(vec![at(2.0), at(30.0)], false).unwrap(),
             radius,
