@@ -6,16 +6,17 @@ use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyRea
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use strokefit::math::{self, Point};
-use strokefit::scene::{Area, Mark, Path, PathPoint, Scene, Stroke};
+use strokefit::scene::{Area, Mark, Path, PathPoint, PointKind, Scene, Stroke};
 
 use crate::failure::Failure;
 
-/// Points (m × 2, px), which of them are on their path (m), where each stroke's points begin (n + 1), which paths are
-/// closed (n), widths (n, px), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0),
+/// Points (m × 2, px), which of them are on their path (m), their kinds (m), where each stroke's points begin (n + 1), which
+/// paths are closed (n), widths (n, px), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0),
 /// for n strokes of m points.
 pub(crate) type StrokeColumns<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<u8>>,
     Bound<'py, PyArray1<i64>>,
     Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray1<f32>>,
@@ -25,12 +26,13 @@ pub(crate) type StrokeColumns<'py> = (
     Bound<'py, PyArray1<i64>>,
 );
 
-/// Points (m × 2, px), which of them are on their ring (m), where each ring's points begin (k + 1), where each area's rings
-/// begin (n + 1), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0), for n areas of
+/// Points (m × 2, px), which of them are on their ring (m), their kinds (m), where each ring's points begin (k + 1), where each
+/// area's rings begin (n + 1), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0), for n areas of
 /// k rings of m points.
 pub(crate) type AreaColumns<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<u8>>,
     Bound<'py, PyArray1<i64>>,
     Bound<'py, PyArray1<i64>>,
     Bound<'py, PyArray2<f32>>,
@@ -40,8 +42,8 @@ pub(crate) type AreaColumns<'py> = (
 );
 
 /// Points (m × 2, px), where each mark's points begin (n + 1), widths (n, px), colours (n × 3), opacities (n), which points are
-/// on their path (m), which paths are closed (n), which marks are areas (n), and the points at which a further ring of an
-/// area begins, for n marks of m points.
+/// on their path (m), which paths are closed (n), which marks are areas (n), the points at which a further ring of an area
+/// begins, and the kinds of points (m) if some are those of cubic curves or arcs, for n marks of m points.
 pub(crate) type MarkColumns<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<i64>>,
@@ -52,12 +54,14 @@ pub(crate) type MarkColumns<'py> = (
     Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray1<i64>>,
+    Option<Bound<'py, PyArray1<u8>>>,
 );
 
 /// The marks of `scene`, back to front.
 pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns<'py>> {
     let scene = scene.clone().filled();
     let points = || scene.marks().flat_map(Mark::paths).flat_map(Path::points);
+    let is_mixed = points().any(|point| matches!(point.kind, PointKind::Cubic | PointKind::Arc));
     let (mut rings, mut end) = (Vec::new(), 0);
     for mark in scene.marks() {
         for (k, path) in mark.paths().iter().enumerate() {
@@ -71,7 +75,7 @@ pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns
         column(py, scene.marks().map(|mark| 2.0 * mark.radius() as f32)),
         rows(py, scene.marks().map(Mark::color))?,
         column(py, scene.marks().map(Mark::opacity)),
-        column(py, points().map(|point| point.is_on)),
+        column(py, points().map(PathPoint::is_on)),
         column(
             py,
             scene
@@ -80,6 +84,7 @@ pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns
         ),
         column(py, scene.marks().map(|mark| mark.as_area().is_some())),
         PyArray1::from_vec(py, rings),
+        is_mixed.then(|| column(py, points().map(|point| point.kind as u8))),
     ))
 }
 
@@ -91,7 +96,8 @@ pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeCol
     let points = || strokes().flat_map(|stroke| stroke.path.points());
     Ok((
         places(py, points().map(|point| point.at))?,
-        column(py, points().map(|point| point.is_on)),
+        column(py, points().map(PathPoint::is_on)),
+        column(py, points().map(|point| point.kind as u8)),
         starts(
             py,
             strokes().map(|stroke: &Stroke| stroke.path.points().len()),
@@ -114,7 +120,8 @@ pub(crate) fn areas<'py>(py: Python<'py>, scene: &Scene) -> PyResult<AreaColumns
     let points = || rings().flat_map(Path::points);
     Ok((
         places(py, points().map(|point| point.at))?,
-        column(py, points().map(|point| point.is_on)),
+        column(py, points().map(PathPoint::is_on)),
+        column(py, points().map(|point| point.kind as u8)),
         starts(py, rings().map(|ring| ring.points().len())),
         starts(py, areas().map(|area| area.rings.len())),
         rows(py, areas().map(|area| area.color))?,
@@ -154,7 +161,7 @@ fn starts(py: Python<'_>, lengths: impl Iterator<Item = usize>) -> Bound<'_, PyA
 /// The centre line of a stroke, or a ring of an area, as the corners of a polyline that is at most `tolerance` px away from it.
 pub(crate) fn flattened<'py>(
     points: &PyReadonlyArray2<'py, f32>,
-    on_path: &PyReadonlyArray1<'py, bool>,
+    kinds: &PyReadonlyArray1<'py, u8>,
     closed: bool,
     tolerance: f32,
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
@@ -162,16 +169,27 @@ pub(crate) fn flattened<'py>(
         let message = format!("tolerance={tolerance}: give px above 0, such as 0.1");
         return Err(PyValueError::new_err(message));
     }
-    let (points, kinds) = (points.as_array(), on_path.as_array());
-    let points = points
-        .outer_iter()
-        .zip(kinds)
-        .map(|(at, &is_on)| PathPoint {
+    let (py, points, kinds) = (points.py(), points.as_array(), kinds.as_array());
+    let points = points.outer_iter().zip(kinds).map(|(at, &kind)| {
+        Ok(PathPoint {
             at: math::point([at[0], at[1]]),
-            is_on,
-        });
-    let path = Path::new(points.collect(), closed).map_err(Failure::Library)?;
-    places(on_path.py(), path.flattened(tolerance.into()))
+            kind: point_kind(kind)?,
+        })
+    });
+    let points = points.collect::<PyResult<_>>()?;
+    let path = Path::new(points, closed).map_err(Failure::Library)?;
+    places(py, path.flattened(tolerance.into()))
+}
+
+/// The kind of a point by its number.
+pub(crate) fn point_kind(kind: u8) -> PyResult<PointKind> {
+    let found = PointKind::ALL.get(usize::from(kind)).copied();
+    found.ok_or_else(|| {
+        let message = format!(
+            "kinds holds {kind}: give 0 on the path, 1 for quadratic and 2 for cubic curves, 3 for arcs"
+        );
+        PyValueError::new_err(message)
+    })
 }
 
 /// Places, n × 2.

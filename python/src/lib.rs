@@ -98,11 +98,11 @@ fn draw<'py>(
 #[pyfunction]
 fn flatten<'py>(
     points: PyReadonlyArray2<'py, f32>,
-    on_path: PyReadonlyArray1<'py, bool>,
+    kinds: PyReadonlyArray1<'py, u8>,
     closed: bool,
     tolerance: f32,
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    columns::flattened(&points, &on_path, closed, tolerance)
+    columns::flattened(&points, &kinds, closed, tolerance)
 }
 
 /// The render of an SVG, height × width × 3 with a background, else × 4.

@@ -12,13 +12,14 @@ use pyo3::prelude::*;
 use strokefit::math::{Point, Real};
 use strokefit::render::reference;
 use strokefit::render::{STYLE, StrokeRef, Strokes};
-use strokefit::scene::{MAX_POINTS, Mark, Path, PathPoint};
+use strokefit::scene::{MAX_POINTS, Mark, Path, PathPoint, PointKind};
 
+use crate::columns::point_kind;
 use crate::failure::Failure;
 
 /// Points (m × 2, px), where each mark's points begin (n + 1), widths (n, px), colours (n × 3), opacities (n), which points
-/// are on their path (m), which paths are closed (n), which marks are areas (n), and the points at which a further ring of an
-/// area begins; for n marks of m points. The last four may be missing.
+/// are on their path (m), which paths are closed (n), which marks are areas (n), the points at which a further ring of an
+/// area begins, and the kinds of points (m); for n marks of m points. The last five may be missing.
 type Arrays<'py, T> = (
     PyReadonlyArray2<'py, T>,
     PyReadonlyArray1<'py, i64>,
@@ -29,6 +30,7 @@ type Arrays<'py, T> = (
     Option<PyReadonlyArray1<'py, bool>>,
     Option<PyReadonlyArray1<'py, bool>>,
     Option<PyReadonlyArray1<'py, i64>>,
+    Option<PyReadonlyArray1<'py, u8>>,
 );
 
 /// Derivatives by points (m × 2), widths (n), colours (n × 3) and opacities (n).
@@ -55,7 +57,7 @@ impl PackedMarks {
         each(&arrays, |row| {
             strokes.push(StrokeRef {
                 points: row.points,
-                off: row.off,
+                kinds: row.kinds,
                 closed: row.closed,
                 rings: row.rings,
                 form: None,
@@ -76,7 +78,7 @@ impl PackedMarks64 {
             let [radius, red, green, blue, opacity] = row.style;
             strokes.push(reference::Stroke {
                 points: row.points.to_vec(),
-                off: row.off.to_vec(),
+                kinds: row.kinds.to_vec(),
                 closed: row.closed,
                 rings: row.rings.iter().map(|&end| end as usize).collect(),
                 radius,
@@ -169,7 +171,7 @@ fn table<T: Element, const N: usize>(
 /// One mark of the arrays.
 struct Row<'a, T> {
     points: &'a [[T; 2]],
-    off: &'a [bool],
+    kinds: &'a [PointKind],
     closed: bool,
     /// For an area, the index behind the last point of each of its rings.
     rings: &'a [u32],
@@ -182,7 +184,7 @@ fn each<T: Element + Real>(
     arrays: &Arrays<'_, T>,
     mut push: impl FnMut(Row<'_, T>),
 ) -> PyResult<()> {
-    let (points, starts, widths, colors, opacities, on_path, closed, filled, rings) = arrays;
+    let (points, starts, widths, colors, opacities, on_path, closed, filled, rings, kinds) = arrays;
     let (points, colors) = (contiguous(points), contiguous(colors));
     let [widths, opacities] = [widths, opacities].map(contiguous);
     let [starts, rings] =
@@ -198,14 +200,10 @@ fn each<T: Element + Real>(
     let is =
         |flags: &Option<Cow<'_, [bool]>>, i: usize| flags.as_ref().is_some_and(|flags| flags[i]);
     let mut further = Further::new(&rings);
-    let (mut off, mut ends) = (Vec::new(), Vec::new());
+    let all_kinds = all_kinds(on_path.as_deref(), kinds.as_ref(), points.len())?;
+    let mut ends = Vec::new();
     for (i, &[red, green, blue]) in colors.iter().enumerate() {
         let own = starts[i] as usize..starts[i + 1] as usize;
-        off.clear();
-        match &on_path {
-            Some(on_path) => off.extend(on_path[own.clone()].iter().map(|is_on| !is_on)),
-            None => off.resize(own.len(), false),
-        }
         let is_area = is(&filled, i);
         ends.clear();
         further.ends(own.clone(), is_area, i, &mut ends)?;
@@ -215,8 +213,8 @@ fn each<T: Element + Real>(
             widths[i] * T::of(0.5)
         };
         let row = Row {
-            points: &points[own],
-            off: &off,
+            points: &points[own.clone()],
+            kinds: &all_kinds[own.clone()],
             closed: is_area || is(&closed, i),
             rings: &ends,
             style: [radius, red, green, blue, opacities[i]],
@@ -225,6 +223,27 @@ fn each<T: Element + Real>(
         push(row);
     }
     further.check()
+}
+
+/// The kinds of all points, by their numbers or by whether they are on their path.
+fn all_kinds(
+    on_path: Option<&[bool]>,
+    kinds: Option<&PyReadonlyArray1<'_, u8>>,
+    count: usize,
+) -> PyResult<Vec<PointKind>> {
+    let Some(kinds) = kinds else {
+        let of_flags = |flags: &[bool]| flags.iter().map(|&is_on| PointKind::on_if(is_on)).collect();
+        return Ok(on_path.map_or_else(|| vec![PointKind::On; count], of_flags));
+    };
+    let kinds = contiguous(kinds).iter().map(|&kind| point_kind(kind));
+    let kinds = kinds.collect::<PyResult<Vec<PointKind>>>()?;
+    let differs = |(kind, is_on): (&PointKind, &bool)| (*kind == PointKind::On) != *is_on;
+    match on_path.and_then(|flags| kinds.iter().zip(flags).position(differs)) {
+        Some(k) => refuse(format!(
+            "on_path[{k}] and kinds[{k}] differ: kinds is 0 for points on their path; give one of the two arrays"
+        )),
+        None => Ok(kinds),
+    }
 }
 
 /// The values of an array in a row, which are copied if they lie otherwise.
@@ -317,16 +336,17 @@ fn check_path<T: Real>(row: &Row<'_, T>, i: usize) -> PyResult<()> {
     let end = row.rings.iter().map(|&end| end as usize);
     let paths = start.zip(end.chain((row.rings.is_empty()).then_some(row.points.len())));
     for (start, end) in paths {
-        let ends_on = (row.closed && end - start > 1) || !(row.off[start] || row.off[end - 1]);
-        if ends_on && end - start <= MAX_POINTS {
+        let kinds = &row.kinds[start..end];
+        let is_path = || PointKind::check(kinds, row.closed);
+        if end - start <= MAX_POINTS && is_path().is_ok() {
             continue;
         }
         // Says what is wrong.
-        let point = |k: usize| PathPoint {
+        let point = |&kind: &PointKind| PathPoint {
             at: Point::new(0.0, 0.0),
-            is_on: !row.off[k],
+            kind,
         };
-        let path = Path::new((start..end).map(point).collect(), row.closed);
+        let path = Path::new(kinds.iter().map(point).collect(), row.closed);
         if let Err(error) = path {
             let error = error.within(format!("mark {i}"));
             return Err(Failure::Library(error).into());

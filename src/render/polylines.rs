@@ -403,40 +403,35 @@ impl Piece {
     /// Adds the derivatives by the vertices behind the start to those by the points that they depend on.
     fn hand_back(&self, stroke: StrokeRef<'_>, slopes: &[[f32; 2]], points: &mut [[f32; 2]]) {
         // The transpose of `flatten`: each vertex gives its derivative to the points, by the same weights.
-        let [by_start, by_end] = match self.between {
-            Between::Line | Between::Quad(_) => {
-                let [by_start, by_control, by_end] =
-                    sums(slopes, |step| self.weights(step, slopes.len()));
-                if let Some(control) = self.control() {
-                    add(&mut points[control], &by_control);
-                }
-                [by_start, by_end]
+        let steps = slopes.len();
+        let of_line = || sums(slopes, |step| self.weights(step, steps));
+        let ([by_start, by_end], between) = match self.between {
+            Between::Line => {
+                let [by_start, _, by_end] = of_line();
+                ([by_start, by_end], [None; 2])
+            }
+            Between::Quad(c) => {
+                let [by_start, by_control, by_end] = of_line();
+                ([by_start, by_end], [Some((c, by_control)), None])
             }
             Between::Cubic([c, d]) => {
-                let [by_start, by_first, by_second, by_end] =
-                    sums(slopes, |step| cubic_weights(step, slopes.len()));
-                add(&mut points[c], &by_first);
-                add(&mut points[d], &by_second);
-                [by_start, by_end]
+                let [by_start, by_c, by_d, by_end] =
+                    sums(slopes, |step| cubic_weights(step, steps));
+                ([by_start, by_end], [Some((c, by_c)), Some((d, by_d))])
             }
             Between::Arc(through) => {
                 let arc = self.arc(stroke.points, through);
-                match self.spread(stroke, &arc, slopes.len()) {
-                    Some(spread) => {
-                        let [by_start, by_through, by_end] = arcs::hand_back(&arc, spread, slopes);
-                        add(&mut points[through], &by_through);
-                        [by_start, by_end]
-                    }
-                    None => {
-                        let [by_start, _, by_end] =
-                            sums(slopes, |step| self.weights(step, slopes.len()));
-                        [by_start, by_end]
-                    }
-                }
+                let spread = self.spread(stroke, &arc, steps);
+                let handed_back = spread.map(|spread| arcs::hand_back(&arc, spread, slopes));
+                let [by_start, by_through, by_end] = handed_back.unwrap_or_else(of_line);
+                ([by_start, by_end], [Some((through, by_through)), None])
             }
         };
         self.from.hand_back(by_start, points);
         self.to.hand_back(by_end, points);
+        for (k, by) in between.into_iter().flatten() {
+            add(&mut points[k], &by);
+        }
     }
 
     /// True if the piece changes with point `k`.

@@ -78,7 +78,7 @@ fn with_little_travel(strokes: Vec<Written>, form: Form) -> Vec<Written> {
 }
 
 /// The scene in the order and the layers of its file: what [`read`](super::read) returns for the text that
-/// [`write`](super::write()) wrote, unless it wrote outlines, which cannot be read.
+/// [`write`](super::write()) wrote, unless it wrote outlines, which are areas.
 pub fn arrange(scene: &Scene, options: &WriteOptions) -> Scene {
     let stage = |layer: &Layer| layer.strokes.iter().map(|mark| mark.mark.clone()).collect();
     let quantized = scene.quantized(options.precision).scene;

@@ -78,7 +78,7 @@ pub enum Form {
     ///
     /// Layers that are laid on another SVG are in the plain form, as its own style sheets may have the same classes.
     Css,
-    /// The filled outline of one stroke, for programs that ignore strokes. It cannot be read back
+    /// The filled outline of one stroke, for programs that ignore strokes. It is read back as an area
     #[cfg_attr(feature = "cli", value(skip))]
     Outlines,
 }

@@ -32,7 +32,7 @@ const INHERITED: [&str; 7] = [
     "fill-opacity",
 ];
 
-/// Reads text that [`write`](super::write()) wrote, in any form except outlines.
+/// Reads text that [`write`](super::write()) wrote, in any form. Outlines are read as areas.
 ///
 /// It ignores comments, white space and attributes with a prefix (`inkscape:label`).
 ///

@@ -1,6 +1,7 @@
 // The renderer for losses of one's own: checks what it is given, and packs it for the WebAssembly.
 
-const OFF = 1, ENDS_RING = 2, ENDS_MARK = 4, CLOSED = 8;
+// The lowest two bits are the kind of a point: on its path, of a quadratic curve, of a cubic one, of an arc.
+const ON = 0, QUAD = 1, CUBIC = 2, ARC = 3, ENDS_RING = 4, ENDS_MARK = 8, CLOSED = 16;
 // Numbers of a mark besides its points: radius, red, green, blue, opacity.
 const STYLE = 5;
 
@@ -42,7 +43,7 @@ export function checkedSize(width, height, softness) {
   if (!(softness > 0 && softness < Infinity)) throw new RangeError(`softness is ${softness}: give px above 0`);
 }
 
-function packed({ points, starts, widths, colors, opacities, onPath, closed, filled, rings = [] }) {
+function packed({ points, starts, widths, colors, opacities, onPath, kinds: given, closed, filled, rings = [] }) {
   const count = widths?.length;
   expectNumbers("starts", starts, count + 1);
   expectNumbers("points", points, 2 * starts.at(-1));
@@ -51,6 +52,8 @@ function packed({ points, starts, widths, colors, opacities, onPath, closed, fil
   expectNumbers("opacities", opacities, count);
   const numbers = new Float32Array(points.length + STYLE * count);
   const kinds = new Uint8Array(points.length / 2);
+  if (given) expectNumbers("kinds", given, kinds.length);
+  const kindOf = (k) => given?.[k] ?? (onPath !== undefined && !onPath[k] ? QUAD : ON);
   const further = new Set(rings);
   let inside = 0;
   for (let i = 0, at = 0; i < count; i++) {
@@ -59,14 +62,18 @@ function packed({ points, starts, widths, colors, opacities, onPath, closed, fil
       throw new RangeError(`starts[${i}] is ${start} and starts[${i + 1}] is ${end}: give whole numbers that rise from 0`);
     }
     if (!(opacities[i] >= 0 && opacities[i] <= 1)) throw new RangeError(`opacities[${i}] is ${opacities[i]}: give 0 to 1`);
-    const isOff = (k) => onPath !== undefined && !onPath[k];
     const isClosed = Boolean(filled?.[i] || closed?.[i]);
-    if ((!isClosed || end - start === 1) && (isOff(start) || isOff(end - 1))) {
+    if ((!isClosed || end - start === 1) && (kindOf(start) !== ON || kindOf(end - 1) !== ON)) {
       throw new RangeError(`mark ${i} is open and starts or ends off its path: close it, or add an end`);
     }
+    let first = start;
     for (let k = start; k < end; k++) {
       if (filled?.[i] && k > start && further.has(k)) inside += 1;
-      kinds[k] = (isOff(k) && OFF) | (filled?.[i] && (k + 1 === end || further.has(k + 1)) && ENDS_RING);
+      const isLast = k + 1 === end || (filled?.[i] && further.has(k + 1));
+      kinds[k] = kindOf(k) | (filled?.[i] && isLast && ENDS_RING);
+      if (!isLast) continue;
+      checkPath(Array.from({ length: k + 1 - first }, (_, j) => kindOf(first + j)), i);
+      first = k + 1;
     }
     kinds[end - 1] |= ENDS_MARK | (isClosed && CLOSED);
     numbers.set(points.slice(2 * start, 2 * end), at);
@@ -78,6 +85,20 @@ function packed({ points, starts, widths, colors, opacities, onPath, closed, fil
     throw new RangeError("rings: give the points, after the first of an area, at which another of its rings begins");
   }
   return { numbers, kinds };
+}
+
+// Refuses points of a path that no pieces are between: the Rust renders what passes here.
+function checkPath(own, i) {
+  if (own.some((kind) => ![ON, QUAD, CUBIC, ARC].includes(kind))) {
+    throw new RangeError(`mark ${i} has kinds ${own}: give 0 on the path, 1 for quadratic and 2 for cubic curves, 3 for arcs`);
+  }
+  if (own.every((kind) => kind === ON || kind === QUAD)) return;
+  const first = own.indexOf(ON);
+  // A closed path goes on from its last point to its first.
+  const around = [...own.slice(first), ...own.slice(0, first)].join("");
+  if (first < 0 || !around.split(`${ON}`).every((run) => /^(1*|22|3)$/.test(run))) {
+    throw new RangeError(`mark ${i} has kinds ${own}: between points on a path are any number of 1, two 2 or one 3`);
+  }
 }
 
 // The derivatives in the order of the numbers, by kind. That by a width is half of that by its radius.

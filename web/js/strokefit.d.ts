@@ -62,8 +62,9 @@ export interface Options {
 }
 
 /**
- * Points x, y, x, y, … and radius, px; colour `#rrggbb`; opacity, 0 to 1; kinds of the points, `o` on the path and `c` for
- * a control point, and then `z` if the path is closed. An area has the radius 0, and its rings one after the other, each
+ * Points x, y, x, y, … and radius, px; colour `#rrggbb`; opacity, 0 to 1; kinds of the points, `o` on the path, `c` for
+ * the control point of a quadratic curve, `b` for one of the two of a cubic curve and `a` for a point that a circular arc
+ * goes through, and then `z` if the path is closed. An area has the radius 0, and its rings one after the other, each
  * with its `z`; it is filled by the nonzero rule.
  */
 export type Mark = [points: number[], radius: number, color: string, opacity: number, kinds: string];
@@ -169,6 +170,11 @@ export interface Marks {
   opacities: Numbers;
   /** m: whether a point is on its path, and no control point. All are, if it is left out. */
   onPath?: readonly boolean[] | Uint8Array;
+  /**
+   * m: what a point is to its path. 0: on it; 1: the control point of a quadratic curve; 2: one of the two of a cubic curve; 3: a
+   * point between two on the path that a circular arc goes through. If it is left out, as `onPath` says: 0 or 1.
+   */
+  kinds?: readonly number[] | Uint8Array;
   /** n: whether the last point is joined to the first. None is, if it is left out. */
   closed?: readonly boolean[] | Uint8Array;
   /** n: whether the mark is an area. None is, if it is left out. */

@@ -6,13 +6,15 @@ use strokefit::loss::Loss;
 use strokefit::render::{
     self, Backdrop, Canvas, Gradients, Grid, STYLE, Softness, StrokeRef, Strokes,
 };
+use strokefit::scene::PointKind;
 use wasm_bindgen::prelude::*;
 
-/// Bits of a point's kind: it is off its path, the last of a ring, and the last of a mark, whose path is closed.
-const OFF: u8 = 1;
-const ENDS_RING: u8 = 2;
-const ENDS_MARK: u8 = 4;
-const CLOSED: u8 = 8;
+/// Bits of a point's kind: what it is to its path, the number of a [`PointKind`]; and that it is the last of a ring, and the last
+/// of a mark, whose path is closed.
+const KIND: u8 = 3;
+const ENDS_RING: u8 = 4;
+const ENDS_MARK: u8 = 8;
+const CLOSED: u8 = 16;
 
 /// Renders marks on pictures of one size.
 #[wasm_bindgen]
@@ -107,22 +109,22 @@ impl Renderer {
 fn strokes(numbers: &[f32], kinds: &[u8]) -> Strokes {
     let mut strokes = Strokes::new();
     let (mut numbers, mut rings) = (numbers, Vec::new());
-    let mut off = Vec::new();
+    let mut of_points = Vec::new();
     for kind in kinds {
-        off.push(kind & OFF != 0);
+        of_points.push(PointKind::ALL[usize::from(kind & KIND)]);
         if kind & ENDS_RING != 0 {
-            rings.push(off.len() as u32);
+            rings.push(of_points.len() as u32);
         }
         if kind & ENDS_MARK == 0 {
             continue;
         }
         let (own, rest) = numbers
-            .split_at_checked(2 * off.len() + STYLE)
+            .split_at_checked(2 * of_points.len() + STYLE)
             .unwrap_or_default();
         if let Some((points, style)) = own.split_last_chunk() {
             strokes.push(StrokeRef {
                 points: points.as_chunks().0,
-                off: &off,
+                kinds: &of_points,
                 closed: kind & CLOSED != 0,
                 rings: &rings,
                 form: None,
@@ -131,7 +133,7 @@ fn strokes(numbers: &[f32], kinds: &[u8]) -> Strokes {
             });
         }
         numbers = rest;
-        off.clear();
+        of_points.clear();
         rings.clear();
     }
     strokes

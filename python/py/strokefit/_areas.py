@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
@@ -29,6 +29,8 @@ class Area(NamedTuple):
     color: tuple[float, float, float]
     #: 0..1.
     opacity: float
+    #: The kinds of the n points of each ring, as those of a `Stroke`. As `on_path` says, if None. Read-only.
+    kinds: Optional[tuple[NDArray[np.uint8], ...]] = None
 
     def flattened(self, tolerance: float = 0.1) -> list[NDArray[np.float32]]:
         """The rings as the corners of polygons at most `tolerance` px away from them, m × 2 each, px.
@@ -41,8 +43,8 @@ class Area(NamedTuple):
         >>> area.flattened(0.5)[0].tolist()
         [[0.0, 0.0], [3.0, 1.0], [4.0, 4.0], [0.0, 0.0]]
         """
-        rings = zip(self.rings, self.on_path)
-        return [_native.flatten(points, on_path, True, tolerance) for points, on_path in rings]
+        kinds = [(~on_path).astype(np.uint8) for on_path in self.on_path] if self.kinds is None else self.kinds
+        return [_native.flatten(points, own, True, tolerance) for points, own in zip(self.rings, kinds)]
 
 
 class Areas(Columns[Area]):
@@ -66,6 +68,8 @@ class Areas(Columns[Area]):
     points: NDArray[np.float32]
     #: Which of the m points are on their ring.
     on_path: NDArray[np.bool_]
+    #: The kinds of the m points, as those of a `Stroke`.
+    kinds: NDArray[np.uint8]
     #: Ring k has the points `points[ring_starts[k]:ring_starts[k + 1]]`.
     ring_starts: NDArray[np.int64]
     #: Area i has the rings `starts[i]` to `starts[i + 1]`, the last not included; n + 1 numbers.
@@ -81,8 +85,8 @@ class Areas(Columns[Area]):
 
     def __init__(self, columns: _AreaColumns) -> None:
         self._freeze(columns)
-        self.points, self.on_path, self.ring_starts, self.starts = columns[:4]
-        self.colors, self.opacities, self.layers, self.order = columns[4:]
+        self.points, self.on_path, self.kinds, self.ring_starts, self.starts = columns[:5]
+        self.colors, self.opacities, self.layers, self.order = columns[5:]
 
     def __len__(self) -> int:
         return len(self.opacities)
@@ -96,9 +100,10 @@ class Areas(Columns[Area]):
             on_path=tuple(self.on_path[ring] for ring in own),
             color=(red, green, blue),
             opacity=float(self.opacities[i]),
+            kinds=tuple(self.kinds[ring] for ring in own),
         )
 
     def __reduce__(self) -> tuple[type[Areas], tuple[_AreaColumns]]:
-        rings = (self.points, self.on_path, self.ring_starts, self.starts)
+        rings = (self.points, self.on_path, self.kinds, self.ring_starts, self.starts)
         styles = (self.colors, self.opacities, self.layers, self.order)
         return Areas, ((*rings, *styles),)

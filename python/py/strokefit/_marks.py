@@ -47,6 +47,9 @@ class Marks(NamedTuple):
     #: int64, in rising order: the points, after the first of an area, at which another of its rings begins. If None, each
     #: area has one ring.
     rings: Optional[NDArray[np.int64]] = None
+    #: uint8, m: 0 for a point on its path, 1 for the control point of a quadratic Bézier curve, 2 for one of the two of a cubic
+    #: one, 3 for a point between two on the path that a circular arc goes through. If None, as `on_path` says: 0 or 1.
+    kinds: Optional[NDArray[np.uint8]] = None
 
 
 class Gradients(NamedTuple):
@@ -66,7 +69,7 @@ class Gradients(NamedTuple):
 
 def checked(marks: Marks, dtype: type[np.floating[Any]]) -> Marks:
     """The marks, whose arrays have the shapes and the types that they need."""
-    points, starts, widths, colors, opacities, on_path, closed, filled, rings = marks
+    points, starts, widths, colors, opacities, on_path, closed, filled, rings, kinds = marks
     m, n = _rows("points", points), _rows("widths", widths)
     expect("points", points, (m, 2), dtype)
     expect("starts", starts, (n + 1,), np.int64)
@@ -78,6 +81,8 @@ def checked(marks: Marks, dtype: type[np.floating[Any]]) -> Marks:
             expect(name, flags, (count,), np.bool_)
     if rings is not None:
         expect("rings", rings, (_rows("rings", rings),), np.int64)
+    if kinds is not None:
+        expect("kinds", kinds, (m,), np.uint8)
     return marks
 
 

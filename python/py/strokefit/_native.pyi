@@ -11,6 +11,7 @@ _Float = TypeVar("_Float", np.float32, np.float64)
 _StrokeColumns = tuple[
     NDArray[np.float32],
     NDArray[np.bool_],
+    NDArray[np.uint8],
     NDArray[np.int64],
     NDArray[np.bool_],
     NDArray[np.float32],
@@ -23,6 +24,7 @@ _StrokeColumns = tuple[
 _AreaColumns = tuple[
     NDArray[np.float32],
     NDArray[np.bool_],
+    NDArray[np.uint8],
     NDArray[np.int64],
     NDArray[np.int64],
     NDArray[np.float32],
@@ -41,6 +43,7 @@ _MarkArrays = tuple[
     Optional[NDArray[np.bool_]],
     Optional[NDArray[np.bool_]],
     Optional[NDArray[np.int64]],
+    Optional[NDArray[np.uint8]],
 ]
 _MarkGradients = tuple[NDArray[_Float], NDArray[_Float], NDArray[_Float], NDArray[_Float]]
 _AllGradients = tuple[_MarkGradients[_Float], Optional[NDArray[_Float]]]
@@ -127,7 +130,7 @@ def draw(
     cancel: Optional[CancelToken],
 ) -> tuple[str, str, _StrokeColumns, _AreaColumns]: ...
 def flatten(
-    points: NDArray[np.float32], on_path: NDArray[np.bool_], closed: bool, tolerance: float
+    points: NDArray[np.float32], kinds: NDArray[np.uint8], closed: bool, tolerance: float
 ) -> NDArray[np.float32]: ...
 def render(svg: str, scale: float, background: str) -> NDArray[np.uint8]: ...
 def judge(svg: str, picture: Union[str, bytes, NDArray[np.generic]]) -> str: ...

@@ -75,7 +75,7 @@ class Scene:
         """The scene of an SVG by strokefit: of a `Drawing`, the text of a file (it contains `<`), or its path.
 
         Raises:
-            ValueError: The SVG is not by strokefit, has been laid on another one, or has the form `outlines`.
+            ValueError: The SVG is not by strokefit, or has been laid on another one.
             FileNotFoundError: There is no such file.
         """
         from ._api import _svg

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
@@ -19,7 +19,8 @@ class Stroke(NamedTuple):
     """A path with round caps and joins, in one colour.
 
     Two points in a row that are on the path are joined by a line. A point off the path is the control point of a
-    quadratic Bézier curve; between two such points in a row, the path goes through the middle, without a corner.
+    quadratic Bézier curve; between two such points in a row, the path goes through the middle, without a corner. `kinds`
+    tells these from points of cubic curves and circular arcs.
     """
 
     #: Points of the centre line, n × 2, px; one point is a dot. Read-only.
@@ -34,6 +35,9 @@ class Stroke(NamedTuple):
     color: tuple[float, float, float]
     #: 0..1.
     opacity: float
+    #: 0 for each of the n points that is on the path, 1 for the control point of a quadratic Bézier curve, 2 for one of the two
+    #: of a cubic one, 3 for a point that a circular arc goes through. As `on_path` says, if None. Read-only.
+    kinds: Optional[NDArray[np.uint8]] = None
 
     def flattened(self, tolerance: float = 0.1) -> NDArray[np.float32]:
         """The centre line as the corners of a polyline at most `tolerance` px away from it, m × 2, px.
@@ -46,7 +50,8 @@ class Stroke(NamedTuple):
         >>> bend.flattened(0.5).tolist()
         [[0.0, 0.0], [3.0, 1.0], [4.0, 4.0]]
         """
-        return _native.flatten(self.points, self.on_path, self.closed, tolerance)
+        kinds = (~self.on_path).astype(np.uint8) if self.kinds is None else self.kinds
+        return _native.flatten(self.points, kinds, self.closed, tolerance)
 
 
 class Strokes(Columns[Stroke]):
@@ -70,6 +75,8 @@ class Strokes(Columns[Stroke]):
     points: NDArray[np.float32]
     #: Which of the m points are on their path.
     on_path: NDArray[np.bool_]
+    #: The kinds of the m points, as those of a `Stroke`.
+    kinds: NDArray[np.uint8]
     #: Stroke i has the points `points[starts[i]:starts[i + 1]]`; n + 1 numbers.
     starts: NDArray[np.int64]
     #: Which of the n paths are closed.
@@ -87,8 +94,8 @@ class Strokes(Columns[Stroke]):
 
     def __init__(self, columns: _StrokeColumns) -> None:
         self._freeze(columns)
-        self.points, self.on_path, self.starts, self.closed = columns[:4]
-        self.widths, self.colors, self.opacities, self.layers, self.order = columns[4:]
+        self.points, self.on_path, self.kinds, self.starts, self.closed = columns[:5]
+        self.widths, self.colors, self.opacities, self.layers, self.order = columns[5:]
 
     def __len__(self) -> int:
         return len(self.widths)
@@ -103,9 +110,10 @@ class Strokes(Columns[Stroke]):
             width=float(self.widths[i]),
             color=(red, green, blue),
             opacity=float(self.opacities[i]),
+            kinds=self.kinds[own],
         )
 
     def __reduce__(self) -> tuple[type[Strokes], tuple[_StrokeColumns]]:
-        paths = (self.points, self.on_path, self.starts, self.closed)
+        paths = (self.points, self.on_path, self.kinds, self.starts, self.closed)
         styles = (self.widths, self.colors, self.opacities, self.layers, self.order)
         return Strokes, ((*paths, *styles),)

@@ -68,6 +68,7 @@ def render(
     closed: Optional[torch.Tensor] = None,
     filled: Optional[torch.Tensor] = None,
     rings: Optional[torch.Tensor] = None,
+    kinds: Optional[torch.Tensor] = None,
     softness: float = 1.2,
     coverage: str = "smoothstep",
     threads: Optional[int] = None,
@@ -86,7 +87,8 @@ def render(
         width, height: Of the picture, px.
         background: A colour of 3, a picture of height × width × 3, or None.
         starts: int64, n + 1: mark i has the points from `starts[i]` to `starts[i + 1]`.
-        on_path, closed, filled, rings: As in `strokefit.Marks`, without batch dimensions; `on_path` may have the shape n × k.
+        on_path, closed, filled, rings, kinds: As in `strokefit.Marks`, without batch dimensions; `on_path` and `kinds` may have
+            the shape n × k.
         softness, coverage, threads: As for `strokefit.Renderer`.
         epsilon: As for `strokefit.Reference`, in float64 alone.
 
@@ -109,9 +111,8 @@ def render(
         tensors[0], places = _flat(points)
     else:
         places = _array(starts)
-    meanings = [None if tensor is None else _array(tensor) for tensor in (on_path, closed, filled, rings)]
-    if meanings[0] is not None:
-        meanings[0] = meanings[0].reshape(-1)
+    meanings = [None if tensor is None else _array(tensor) for tensor in (on_path, closed, filled, rings, kinds)]
+    meanings = [None if meaning is None else meaning.reshape(-1) for meaning in meanings]
     is_exact = points.dtype == torch.float64
     if epsilon is not None and not is_exact:
         raise ValueError(f"epsilon={epsilon}: it is for float64 alone")

@@ -107,7 +107,7 @@ const short = (value) => Number(value.toFixed(2));
 // Control points follow each other; on-points are joined by lines to what comes before them.
 function data({ start, pieces, closed }) {
   const place = ([x, y]) => `${short(x)} ${short(y)}`;
-  const parts = pieces.map((piece) => (piece.length > 1 ? "Q" : "L") + piece.map(place).join(" "));
+  const parts = pieces.map((piece) => " LQC"[piece.length] + piece.map(place).join(" "));
   if (pieces.length === 0) parts.push(`h0.01`);
   return `M${place(start)}${parts.join("")}${closed ? "Z" : ""}`;
 }

@@ -1,7 +1,7 @@
 // Marks on canvases: strokes, and areas, which are filled by the nonzero rule. A mark is [points, radius, colour, opacity,
 // kinds], back to front as in the SVG; points are x, y, x, y, … in px of the picture, and the radius of an area is 0. Kinds
-// has a letter for each point, "o" on the path and "c" for the control point of a curve, and then "z" if the path is
-// closed, and so after the points of each ring of an area. An area with a gradient has that as a sixth.
+// has a letter for each point, "o" on the path, "c" for the control point of a quadratic curve, "b" for one of a cubic curve
+// and "a" for a point of an arc between its ends, and then "z" if the path is closed, and so after the points of each ring of an area. An area with a gradient has that as a sixth.
 
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
@@ -65,7 +65,8 @@ function trace(context, mark) {
     context.moveTo(...start);
     for (const piece of pieces) {
       const places = piece.flat();
-      if (piece.length > 1) context.quadraticCurveTo(...places);
+      if (piece.length > 2) context.bezierCurveTo(...places);
+      else if (piece.length > 1) context.quadraticCurveTo(...places);
       else context.lineTo(...places);
     }
     // Canvases draw no line of length 0: a dot is a short one, as in the file.
@@ -77,7 +78,7 @@ function trace(context, mark) {
 // The paths of a mark, each as its places and their kinds.
 export function paths([points, , , , kinds]) {
   let first = 0;
-  return kinds.match(/[oc]+z?/g).map((own) => {
+  return kinds.match(/[ocba]+z?/g).map((own) => {
     const count = own.replace("z", "").length;
     const places = Array.from({ length: count }, (_, k) => [points[2 * (first + k)], points[2 * (first + k) + 1]]);
     first += count;
@@ -85,10 +86,10 @@ export function paths([points, , , , kinds]) {
   });
 }
 
-// The paths of a mark, each as its start and its pieces: an end, or a control point and an end.
+// The paths of a mark, each as its start and its pieces: an end, behind one control point or two of a curve.
 export const walks = (mark) => paths(mark).map(walk);
 
-// Halfway between two control points lies an end that the file of the drawing implies.
+// Halfway between two control points of quadratic curves lies an end that the file of the drawing implies.
 function walk({ places, kinds }) {
   const closed = kinds.endsWith("z"), middle = (a, b) => [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
   const isOn = places.map((_, k) => kinds[k] === "o");
@@ -96,15 +97,40 @@ function walk({ places, kinds }) {
   const start = isOn[first] ? places[first] : middle(places.at(-1), places[0]);
   const order = places.map((_, k) => (first + k) % places.length).slice(isOn[first] ? 1 : 0);
   const pieces = [];
-  let control = null;
+  let from = start, between = [], isArc = false;
+  const goTo = (to) => {
+    pieces.push(...(isArc ? arc(from, between[0], to) : [[...between, to]]));
+    [from, between, isArc] = [to, [], false];
+  };
   for (const k of order) {
-    if (control) pieces.push([control, isOn[k] ? places[k] : middle(control, places[k])]);
-    else if (isOn[k]) pieces.push([places[k]]);
-    control = isOn[k] ? null : places[k];
+    if (isOn[k]) goTo(places[k]);
+    else {
+      if (kinds[k] === "c" && between.length > 0) goTo(middle(between[0], places[k]));
+      between.push(places[k]);
+      isArc = kinds[k] === "a";
+    }
   }
-  if (control) pieces.push([control, start]);
-  else if (closed) pieces.push([start]);
+  if (between.length > 0 || closed) goTo(start);
   return { start, pieces, closed };
+}
+
+// Cubic curves in the place of the arc through three points, as scene/arc.rs has them; a line if they are in one.
+function arc(a, m, b) {
+  const [ux, uy, vx, vy] = [m[0] - a[0], m[1] - a[1], b[0] - m[0], b[1] - m[1]];
+  const bulge = (ux * vy - uy * vx) / (Math.hypot(ux, uy) * Math.hypot(vx, vy) + ux * vx + uy * vy);
+  return bulge && Number.isFinite(bulge) ? bent(a, b, bulge) : [[b]];
+}
+
+// A bulge is the tangent of a quarter of an arc's sweep. Arcs of more than 45° are halved.
+function bent(a, b, bulge) {
+  const [x, y] = [b[0] - a[0], b[1] - a[1]];
+  if (Math.abs(bulge) > 0.2) {
+    const halfway = [(a[0] + b[0] + bulge * y) / 2, (a[1] + b[1] - bulge * x) / 2], half = bulge / (1 + Math.hypot(1, bulge));
+    return [...bent(a, halfway, half), ...bent(halfway, b, half)];
+  }
+  const along = (1 - bulge ** 2) / 3, beside = (2 * bulge) / 3;
+  const handle = (p, sign) => [p[0] + sign * along * x + beside * y, p[1] + sign * along * y - beside * x];
+  return [[handle(a, 1), handle(b, -1), b]];
 }
 
 // A ring around a mark that shows on any colour; what is inside stays as it is. `px` is a CSS px.
@@ -134,7 +160,7 @@ export function drawPoints(context, mark, px) {
 }
 
 function drawPathPoints(context, { places, kinds }, px) {
-  if (places.length < 3 && !kinds.includes("c")) return;
+  if (places.length < 3 && !/[cba]/.test(kinds)) return;
   context.lineWidth = px;
   context.strokeStyle = "#06c";
   context.setLineDash([3 * px, 3 * px]);
