@@ -232,10 +232,12 @@ fn all_kinds(
     count: usize,
 ) -> PyResult<Vec<PointKind>> {
     let Some(kinds) = kinds else {
-        let of_flags = |flags: &[bool]| flags.iter().map(|&is_on| PointKind::on_if(is_on)).collect();
+        let of_flags =
+            |flags: &[bool]| flags.iter().map(|&is_on| PointKind::on_if(is_on)).collect();
         return Ok(on_path.map_or_else(|| vec![PointKind::On; count], of_flags));
     };
-    let kinds = contiguous(kinds).iter().map(|&kind| point_kind(kind));
+    let numbers = contiguous(kinds);
+    let kinds = numbers.iter().map(|&kind| point_kind(kind));
     let kinds = kinds.collect::<PyResult<Vec<PointKind>>>()?;
     let differs = |(kind, is_on): (&PointKind, &bool)| (*kind == PointKind::On) != *is_on;
     match on_path.and_then(|flags| kinds.iter().zip(flags).position(differs)) {

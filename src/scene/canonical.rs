@@ -306,8 +306,9 @@ fn cusp(curve: &QuadBez) -> Option<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rng;
     use crate::scene::UNITS_PER_PX;
-    use kurbo::PathSeg;
+    use kurbo::ParamCurveNearest;
 
     /// Points by their places, each on the path if it says so.
     fn points(list: &[(f64, f64, bool)]) -> Vec<PathPoint> {
@@ -487,6 +488,62 @@ mod tests {
         assert_eq!(rounded(&drop, true), (expected.to_vec(), true));
     }
 
+    /// A path of all kinds of pieces, open or closed.
+    fn mixed(seed: u64) -> Path {
+        let draw = |axis, k| f64::from(rng::draw(axis, seed, k, 0));
+        let closed = seed.is_multiple_of(2);
+        let pieces = (0..4).flat_map(|i| {
+            let at = |k: u64| Point::new(20.0 * draw(0, 4 * i + k), 20.0 * draw(1, 4 * i + k));
+            let between = match (draw(2, i) * 5.0) as usize {
+                0 => vec![],
+                1 => vec![PathPoint::off(at(1)), PathPoint::off(at(2))],
+                2 => vec![PathPoint::cubic(at(1)), PathPoint::cubic(at(2))],
+                _ => vec![PathPoint::arc(at(1))],
+            };
+            [vec![PathPoint::on(at(0))], between].concat()
+        });
+        let last = (!closed).then(|| PathPoint::on(Point::new(3.0, 4.0)));
+        Path::new(pieces.chain(last).collect(), closed).unwrap()
+    }
+
+    #[test]
+    fn rounded_pieces_are_near_and_round_to_themselves() {
+        for path in (0..500).map(mixed) {
+            let written = path.rounded(&Grid::new(2));
+            assert_eq!(written.rounded(&Grid::new(2)), written);
+            let lines = path.lines(1e-3);
+            for p in written.flattened(1e-3) {
+                let nearest = lines.iter().map(|line| line.nearest(p, 0.0).distance_sq);
+                let away = nearest.fold(f64::INFINITY, f64::min).sqrt();
+                assert!(away < 0.1, "{path:?}: {away}");
+            }
+        }
+    }
+
+    #[test]
+    fn cubic_curves_on_their_chord_are_lines() {
+        let curve = |x: [f64; 4], y: [f64; 4]| {
+            let at = |k: usize| Point::new(x[k], y[k]);
+            let controls = [1, 2].map(|k| PathPoint::cubic(at(k)));
+            let points = [
+                &[PathPoint::on(at(0))],
+                &controls[..],
+                &[PathPoint::on(at(3))],
+            ];
+            let path = Path::new(points.concat(), false)
+                .unwrap()
+                .rounded(&Grid::new(2));
+            path.points().len()
+        };
+        assert_eq!(curve([0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 4.0, 6.0]), 2);
+        assert_eq!(curve([0.0, 0.0, 3.0, 3.0], [0.0, 0.0, 6.0, 6.0]), 2);
+        assert_eq!(curve([0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 4.01, 6.0]), 4);
+        assert_eq!(curve([0.0, 2.0, 1.0, 3.0], [0.0, 4.0, 2.0, 6.0]), 4);
+        assert_eq!(curve([0.0, -1.0, 2.0, 3.0], [0.0, -2.0, 4.0, 6.0]), 4);
+        assert_eq!(curve([0.0, 1.0, 0.0, 0.0], [0.0, 2.0, 0.0, 0.0]), 4);
+        assert_eq!(curve([5.0; 4], [7.0; 4]), 1);
+    }
+
     #[test]
     fn the_other_way_has_the_same_pieces() {
         let list = [
@@ -496,21 +553,29 @@ mod tests {
             (0.0, 4.0, ON),
         ];
         let off = list.map(|(x, y, _)| (x, y, OFF));
-        for (list, closed) in [(list, false), (list, true), (off, true)] {
-            let path = Path::new(points(&list), closed).unwrap();
+        let plain = [(list, false), (list, true), (off, true)];
+        let plain = plain.map(|(list, closed)| Path::new(points(&list), closed).unwrap());
+        for path in plain.into_iter().chain((0..200).map(mixed)) {
             let written = path.rounded(&Grid::new(1));
-            let mut turned: Vec<_> = written
-                .segments()
-                .map(|segment| segment.reverse())
-                .collect();
-            let mut reversed: Vec<_> = written.turned().segments().collect();
-            let by_start = |a: &PathSeg, b: &PathSeg| {
-                let key = |segment: &PathSeg| <(f64, f64)>::from(segment.start());
-                key(a).partial_cmp(&key(b)).unwrap()
+            let around = |piece: &PathPiece, is_turned: bool| {
+                let mut points: Vec<_> = piece.between().map(|p| (p.kind, p.at)).collect();
+                points.insert(0, (PointKind::On, piece.start()));
+                points.push((PointKind::On, piece.end()));
+                if is_turned {
+                    points.reverse();
+                }
+                points
+                    .into_iter()
+                    .map(|(kind, at)| (kind, <(f64, f64)>::from(at)))
+                    .collect()
             };
-            turned.sort_by(by_start);
-            reversed.sort_by(by_start);
-            assert_eq!(turned, reversed);
+            let pieces = |path: &Path, is_turned: bool| -> Vec<Vec<_>> {
+                let pieces = path.pieces().map(|piece| around(&piece, is_turned));
+                let mut pieces: Vec<_> = pieces.collect();
+                pieces.sort_by(|a: &Vec<_>, b| a.partial_cmp(b).unwrap());
+                pieces
+            };
+            assert_eq!(pieces(&written, true), pieces(&written.turned(), false));
         }
     }
 }

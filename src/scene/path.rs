@@ -388,6 +388,56 @@ mod tests {
     }
 
     #[test]
+    fn other_points_than_those_of_a_piece_are_refused() {
+        use PointKind::{Arc, Cubic, On, Quad};
+        let path = |kinds: &[PointKind], closed: bool| {
+            let at = |k: usize| Point::new((k * k) as f64, 3.0 * k as f64);
+            let points = kinds.iter().enumerate();
+            let points = points.map(|(k, &kind)| PathPoint { at: at(k), kind });
+            Path::new(points.collect(), closed)
+        };
+        for (kinds, closed) in [
+            (&[On, Cubic, On][..], false),
+            (&[On, Cubic, Cubic, Cubic, On], false),
+            (&[On, Arc, Arc, On], false),
+            (&[On, Quad, Arc, On], false),
+            (&[On, Cubic, Quad, On], false),
+            (&[Cubic, On, On, Quad], true),
+            (&[Arc, Arc, Arc], true),
+            (&[Cubic, Cubic], true),
+            (&[On, On, Cubic], true),
+        ] {
+            let error = path(kinds, closed).unwrap_err().to_string();
+            assert!(
+                error.contains("on it") || error.contains("one Arc"),
+                "{error}"
+            );
+        }
+        for (kinds, closed, pieces) in [
+            (
+                &[On, Cubic, Cubic, On, Arc, On, Quad, Quad, On][..],
+                false,
+                4,
+            ),
+            (&[On, Arc, On, Arc], true, 2),
+            (&[On, Cubic, Cubic], true, 1),
+            (&[Cubic, On, On, Arc, On, Cubic], true, 3),
+        ] {
+            let path = path(kinds, closed).unwrap();
+            assert_eq!(path.pieces().count(), pieces, "{kinds:?}");
+            let pairs = path.pieces().zip(path.pieces().skip(1));
+            pairs.for_each(|(a, b)| assert_eq!(a.end(), b.start()));
+            let places = path.flattened(1e-3);
+            let bounds = path.bounds().inflate(1e-9, 1e-9);
+            assert!(places.iter().all(|p| bounds.contains(*p)), "{path:?}");
+            let quadratic = path.quadratic(1e-3);
+            assert!(!quadratic.is_mixed());
+            let areas = [&path, &quadratic].map(|path| kurbo::Shape::area(&path.bezier()));
+            assert!((areas[0] - areas[1]).abs() < 0.2, "{areas:?}");
+        }
+    }
+
+    #[test]
     fn corners_make_a_rectangle_in_either_sense() {
         let corners = [(1.0, 2.0), (9.0, 2.0), (9.0, 7.5), (1.0, 7.5)].map(Point::from);
         let rect = Shape::rect([corners[0], corners[2]], 0.0);

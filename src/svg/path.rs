@@ -466,7 +466,8 @@ mod tests {
     #[test]
     fn a_cubic_curve_says_its_first_control_point_once() {
         let cubic = |points: &[(i64, i64)]| {
-            let kind = |i: usize| [PathPoint::on, PathPoint::cubic][usize::from(i % 3 > 0)];
+            let kind =
+                |i: usize| [PathPoint::on, PathPoint::cubic][usize::from(!i.is_multiple_of(3))];
             let points = points.iter().enumerate();
             let points = points.map(|(i, &(x, y))| kind(i)(point(px(x, y))));
             Path::canonical(points.collect(), false)

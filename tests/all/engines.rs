@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use crate::support::paths::of_letter;
 use crate::support::{
     Place, STROKEFIT, Words, committed, drawn, entry, installed, of_strokes, on_white, record,
     sample, stderr, within,
@@ -18,7 +19,7 @@ use strokefit::image::Image;
 use strokefit::math;
 use strokefit::metrics;
 use strokefit::scene::{
-    self, Area, Axis, Cap, PathPoint, PointKind, Scene, Shade, ShadeStop, Stage, Stroke,
+    self, Area, Axis, Cap, Mark, PathPoint, PointKind, Scene, Shade, ShadeStop, Stage, Stroke,
 };
 use strokefit::svg::{self, Form, WriteOptions};
 use strokefit::verify::{self, Size};
@@ -158,6 +159,24 @@ fn bent(points: &[(f32, f32, bool)], closed: bool, width: f32, opacity: f32) -> 
     }
 }
 
+/// Closed paths of all kinds of pieces, as a stroke and as an area.
+fn mixed(points: &[(f32, f32, char)]) -> [Mark; 2] {
+    let point = |&(x, y, kind): &(f32, f32, char)| PathPoint {
+        at: math::point([x, y]),
+        kind: of_letter(kind),
+    };
+    let path = scene::Path::new(points.iter().map(point).collect(), true).unwrap();
+    let stroke = Stroke {
+        path: path.clone(),
+        opacity: 0.6,
+        ..capsule([0.0; 2], [0.0; 2], 4.0)
+    };
+    [
+        stroke.into(),
+        Area::plain(vec![path], [0.9, 0.2, 0.1], 0.7).into(),
+    ]
+}
+
 /// A page of 64×48 px with these strokes.
 fn page(strokes: Vec<Stroke>) -> Scene {
     Scene {
@@ -243,10 +262,34 @@ fn kinds() -> Vec<(&'static str, Scene)> {
             capsule(at, at, width)
         })
     };
+    let arcs = [
+        (8.0, 20.0, 'o'),
+        (20.0, 4.0, 'a'),
+        (32.0, 20.0, 'o'),
+        (44.0, 23.0, 'a'),
+        (56.0, 20.0, 'o'),
+        (40.0, 44.0, 'a'),
+    ];
+    let cubics = [
+        (8.0, 24.0, 'o'),
+        (8.0, 0.0, 'c'),
+        (40.0, 8.0, 'c'),
+        (32.0, 24.0, 'o'),
+        (24.0, 40.0, 'c'),
+        (60.0, 60.0, 'c'),
+        (56.0, 12.0, 'o'),
+        (50.0, 40.0, '~'),
+    ];
+    let of_marks = |marks: [Mark; 2]| Scene {
+        stages: vec![Stage::from_iter(marks)],
+        ..page(Vec::new())
+    };
     let faint = |strokes: Vec<Stroke>| strokes.into_iter().map(|s| Stroke { opacity: 0.2, ..s });
     let bent = bent_kinds().into_iter();
     let bent = bent.map(|(kind, strokes)| (kind, page(strokes)));
     let mut kinds = vec![
+        ("arcs", of_marks(mixed(&arcs))),
+        ("cubic curves", of_marks(mixed(&cubics))),
         ("large dots", page(grid(4.6).collect())),
         ("smallest dots", page(grid(1.02).collect())),
         ("thinnest strokes", page(fan(1.02).collect())),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::{Place, assert_refused, assert_says, on_white, sample, stderr};
+use crate::support::{Place, agreement, assert_refused, assert_says, on_white, sample, stderr};
 use strokefit::image::Image;
 use strokefit::scene::{Mark, Stage};
 use strokefit::svg;
@@ -130,8 +130,8 @@ fn outlines_are_verified_and_read_back_as_areas() {
     assert!(drawn.report["agreement"]["psnr_db"].as_f64().unwrap() > 36.0);
     let scene = svg::read(&drawn.text).unwrap();
     assert!(scene.marks().all(|mark| mark.as_area().is_some()));
-    let again = svg::write(&scene, &WriteOptions::default());
-    assert!(agreement(&drawn.text, &again) > 45.0);
+    let again = svg::write(&scene, &svg::WriteOptions::default());
+    assert!(agreement(&on_white(&drawn.text), &on_white(&again)) > 45.0);
 }
 
 #[test]
