@@ -183,13 +183,7 @@ pub(crate) fn flattened<'py>(
 
 /// The kind of a point by its number.
 pub(crate) fn point_kind(kind: u8) -> PyResult<PointKind> {
-    let found = PointKind::ALL.get(usize::from(kind)).copied();
-    found.ok_or_else(|| {
-        let message = format!(
-            "kinds holds {kind}: give 0 on the path, 1 for quadratic and 2 for cubic curves, 3 for arcs"
-        );
-        PyValueError::new_err(message)
-    })
+    Ok(PointKind::try_from(kind).map_err(|error| Failure::Library(error.within("kinds")))?)
 }
 
 /// Places, n × 2.

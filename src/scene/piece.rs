@@ -7,10 +7,11 @@ use super::arc::Arc;
 use crate::error::{Error, ErrorKind, Result};
 use crate::math::Point;
 
-/// What a point is to its path.
+/// What a point is to its path. In files of states it is a number, in the order of these.
 #[derive(
     Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
+#[serde(into = "u8", try_from = "u8")]
 #[repr(u8)]
 pub enum PointKind {
     /// The path goes through it.
@@ -72,6 +73,26 @@ impl PointKind {
             }
         }
         Ok(())
+    }
+}
+
+impl From<PointKind> for u8 {
+    fn from(kind: PointKind) -> Self {
+        kind as Self
+    }
+}
+
+impl TryFrom<u8> for PointKind {
+    type Error = Error;
+
+    fn try_from(number: u8) -> Result<Self> {
+        let kind = Self::ALL.get(usize::from(number)).copied();
+        kind.ok_or_else(|| {
+            let message = format!(
+                "{number} is no kind of point: give 0 on the path, 1 for quadratic and 2 for cubic curves, 3 for arcs"
+            );
+            Error::new(ErrorKind::Config, message)
+        })
     }
 }
 

@@ -201,7 +201,7 @@ struct Run {
 fn ranks(strokes: &[Written]) -> Vec<usize> {
     let key = |stroke: &Written| {
         let points = stroke.paths().iter().flat_map(Path::points);
-        let points = points.flat_map(|p| [units(p.at.x), units(p.at.y), p.kind as i64]);
+        let points = points.flat_map(|p| [units(p.at.x), units(p.at.y), -(p.kind as i64)]);
         let style = (stroke.mark.is_butt(), style_of(stroke));
         (points.collect::<Vec<i64>>(), style)
     };

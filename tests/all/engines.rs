@@ -288,8 +288,6 @@ fn kinds() -> Vec<(&'static str, Scene)> {
     let bent = bent_kinds().into_iter();
     let bent = bent.map(|(kind, strokes)| (kind, page(strokes)));
     let mut kinds = vec![
-        ("arcs", of_marks(mixed(&arcs))),
-        ("cubic curves", of_marks(mixed(&cubics))),
         ("large dots", page(grid(4.6).collect())),
         ("smallest dots", page(grid(1.02).collect())),
         ("thinnest strokes", page(fan(1.02).collect())),
@@ -297,6 +295,8 @@ fn kinds() -> Vec<(&'static str, Scene)> {
             "faint thin strokes",
             page(faint(fan(1.02).collect()).collect()),
         ),
+        ("arcs", of_marks(mixed(&arcs))),
+        ("cubic curves", of_marks(mixed(&cubics))),
         (
             "partly off the page",
             page(vec![

@@ -21,7 +21,7 @@ use crate::fit::drawing::focus::Focus;
 use crate::image::Image;
 
 /// The first bytes of every checkpoint; the number counts the released layouts.
-const MAGIC: &[u8; 24] = b"strokefit checkpoint 04\n";
+const MAGIC: &[u8; 24] = b"strokefit checkpoint 05\n";
 /// Length of the head, bytes: magic, fingerprint and checksum.
 const HEAD: usize = MAGIC.len() + 8 + 8;
 
