@@ -235,6 +235,30 @@ def test_a_drawing_may_be_empty_or_beside_the_picture() -> None:
     assert not renderer.backward(np.ones((HEIGHT, WIDTH, 3), np.float32)).points.any()
 
 
+def test_paths_hold_cubic_curves_and_arcs() -> None:
+    bow = strokefit.Marks(
+        points=np.array([[8, 40], [8, 8], [40, 8], [40, 40], [56, 56], [72, 40]], np.float32),
+        starts=np.array([0, 6]),
+        widths=np.array([4], np.float32),
+        colors=np.array([[1, 0, 0]], np.float32),
+        opacities=np.array([1], np.float32),
+        kinds=np.array([0, 2, 2, 0, 3, 0], np.uint8),
+    )
+    scene = strokefit.Scene(WIDTH, HEIGHT, bow, background=(1, 1, 1))
+    assert 'd="M8 40C8 8 40 8 40 40a16 16 0 0 0 32 0"' in scene.to_svg()
+    image = strokefit.Renderer(WIDTH, HEIGHT).render(bow, (1, 1, 1))
+    file = strokefit.render(scene, background="#ffffff") / 255
+    assert np.abs(image - file).mean() < 0.005
+    exact = strokefit.Reference(WIDTH, HEIGHT).render(double(bow), (1, 1, 1))
+    assert np.allclose(image, exact, atol=1e-4)
+    read = strokefit.Scene.read(scene.to_svg())
+    assert read.marks.kinds.tolist() == bow.kinds.tolist() and read.marks.on_path.tolist() == (bow.kinds == 0).tolist()
+    assert read.to_svg() == scene.to_svg()
+    stroke = strokefit.Stroke(bow.points, bow.kinds == 0, False, 4.0, (1.0, 0.0, 0.0), 1.0, bow.kinds)
+    assert stroke.flattened(0.01)[:, 1].max() == pytest.approx(56, abs=0.02)
+    assert read.refine(strokefit.render(scene, background="#ffffff"), strokes=2, preset="draft").svg
+
+
 MARKS = strokes(0, 8)
 SHAPES = areas(0, 6)
 
@@ -255,6 +279,10 @@ SHAPES = areas(0, 6)
         ({"starts": np.sort(MARKS.starts % 5)}, ValueError, "starts goes from"),
         ({"starts": MARKS.starts[[0, 1, 1, 3, 4, 5, 6, 7, 8]]}, ValueError, r"starts\[1\] is 1 and starts\[2\] is 1: every mark needs a point"),
         ({"on_path": ~MARKS.on_path}, ValueError, "mark 0: an open path has to start and end with points on it"),
+        ({"kinds": MARKS.on_path}, TypeError, "kinds is of bool: give uint8"),
+        ({"kinds": np.full(30, 4, np.uint8)}, ValueError, "kinds: 4 is no kind of point: give 0 on the path"),
+        ({"kinds": (~MARKS.on_path).astype(np.uint8) ^ (np.arange(30) == 1)}, ValueError, r"on_path\[1\] and kinds\[1\] differ"),
+        ({"kinds": 2 * (~MARKS.on_path).astype(np.uint8) + (np.arange(30) == 4)}, ValueError, "mark 2: between two points .* are"),
         ({"closed": MARKS.closed.astype(np.uint8)}, TypeError, "closed is of uint8: give bool"),
         ({"rings": np.array([2])}, ValueError, r"rings\[0\] is 2: give, .* mark 1 has the points 1 to 2 and is a stroke"),
         ({"rings": np.array([99])}, ValueError, r"rings\[0\] is 99: there are not as many points"),

@@ -53,6 +53,21 @@ describe("renderer", () => {
     own.free();
   });
 
+  it("draws cubic curves and arcs, and differentiates them", async () => {
+    const own = await renderer(width, height);
+    const points = [2.1, 9.2, 3.3, 1.1, 9.4, 2.2, 9.1, 9.3, 13.2, 15.1, 17.3, 8.2];
+    const bow = { points, starts: [0, 6], widths: [2], colors: [1, 0, 0], opacities: [0.9], kinds: [0, 2, 2, 0, 3, 0] };
+    const by = own.backward(own.render(bow, background).map((c, k) => 2 * (c - target[k])));
+    for (const k of points.keys()) {
+      const at = (step) => loss(own.render({ ...bow, points: points.map((v, i) => (i === k ? v + step : v)) }, background));
+      const slope = (at(2e-3) - at(-2e-3)) / 4e-3;
+      assert.ok(Math.abs(by.points[k] - slope) < 0.02 * Math.abs(slope) + 0.05, `points[${k}]: ${by.points[k]}, by differences ${slope}`);
+    }
+    const wrong = [[0, 2, 1, 0, 3, 0], [0, 2, 2, 0, 7, 0], [0, 3, 3, 0, 0, 0]];
+    for (const kinds of wrong) assert.throws(() => own.render({ ...bow, kinds }, background), /mark 0 has kinds/);
+    own.free();
+  });
+
   it("says what is wrong, and what would be right", async () => {
     const own = await renderer(width, height);
     assert.throws(() => own.backward(target), /there is no picture yet: call render first/);

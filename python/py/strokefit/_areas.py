@@ -29,7 +29,7 @@ class Area(NamedTuple):
     color: tuple[float, float, float]
     #: 0..1.
     opacity: float
-    #: The kinds of the n points of each ring, as those of a `Stroke`. As `on_path` says, if None. Read-only.
+    #: The kinds of the n points of each ring, as those of a `Stroke`. Read-only.
     kinds: Optional[tuple[NDArray[np.uint8], ...]] = None
 
     def flattened(self, tolerance: float = 0.1) -> list[NDArray[np.float32]]:
@@ -95,12 +95,13 @@ class Areas(Columns[Area]):
         red, green, blue = self.colors[i].tolist()
         ends = self.ring_starts[self.starts[i] : self.starts[i + 1] + 1].tolist()
         own = [slice(start, end) for start, end in zip(ends, ends[1:])]
+        kinds = tuple(self.kinds[ring] for ring in own)
         return Area(
             rings=tuple(self.points[ring] for ring in own),
             on_path=tuple(self.on_path[ring] for ring in own),
             color=(red, green, blue),
             opacity=float(self.opacities[i]),
-            kinds=tuple(self.kinds[ring] for ring in own),
+            kinds=kinds if any((ring > 1).any() for ring in kinds) else None,
         )
 
     def __reduce__(self) -> tuple[type[Areas], tuple[_AreaColumns]]:

@@ -36,7 +36,7 @@ class Stroke(NamedTuple):
     #: 0..1.
     opacity: float
     #: 0 for each of the n points that is on the path, 1 for the control point of a quadratic Bézier curve, 2 for one of the two
-    #: of a cubic one, 3 for a point that a circular arc goes through. As `on_path` says, if None. Read-only.
+    #: of a cubic one, 3 for a point that a circular arc goes through. If None, there is neither, and `on_path` says all. Read-only.
     kinds: Optional[NDArray[np.uint8]] = None
 
     def flattened(self, tolerance: float = 0.1) -> NDArray[np.float32]:
@@ -110,7 +110,7 @@ class Strokes(Columns[Stroke]):
             width=float(self.widths[i]),
             color=(red, green, blue),
             opacity=float(self.opacities[i]),
-            kinds=self.kinds[own],
+            kinds=self.kinds[own] if (self.kinds[own] > 1).any() else None,
         )
 
     def __reduce__(self) -> tuple[type[Strokes], tuple[_StrokeColumns]]:

@@ -111,8 +111,8 @@ def render(
         tensors[0], places = _flat(points)
     else:
         places = _array(starts)
+    on_path, kinds = (None if tensor is None else tensor.reshape(-1) for tensor in (on_path, kinds))
     meanings = [None if tensor is None else _array(tensor) for tensor in (on_path, closed, filled, rings, kinds)]
-    meanings = [None if meaning is None else meaning.reshape(-1) for meaning in meanings]
     is_exact = points.dtype == torch.float64
     if epsilon is not None and not is_exact:
         raise ValueError(f"epsilon={epsilon}: it is for float64 alone")
