@@ -8,7 +8,7 @@
 //! centre         midpoint + n·(k² − 1)/2k  bulge of each half  k / (1 + √(1 + k²))
 //! ```
 //!
-//! A file has the ends, the radius and two flags of an arc. [`Arc::of_radius`] is the only function from these numbers to the
+//! A file has the ends, the radius and two flags of an arc. [`Arc::of_numbers`] is the only function from these numbers to the
 //! point halfway, for those who round and for those who read, so that both have the same point to the bit.
 
 use kurbo::{CubicBez, Line, PathSeg};

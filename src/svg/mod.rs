@@ -44,7 +44,7 @@
 //! - An arc, `A r r 0 large sweep x y`, goes through the point halfway that its radius and flags give exactly. So an arc is
 //!   rounded to a radius of as many decimals; where none is near, as beside half circles, its halves are, and a very flat one
 //!   is a cubic curve. Of a half circle the radius is half the chord, or fewer px, which SVG enlarges.
-//! - A quadratic curve that turns back within 0.02 px is written as two lines, because Cairo leaves a half of it out.
+//! - A quadratic curve that turns back within 0.02 px is written as two lines, and a cubic one as two curves, because Cairo leaves a half of it out.
 //! - The layer has `stroke-linejoin="round"` if a stroke in it has a join, and none of these attributes if it has only
 //!   areas.
 //! - In the smallest form, neighbouring strokes of equal colour, width and opacity are one path, `M1 2L3 4M7 8l1 2`,
