@@ -295,8 +295,6 @@ fn kinds() -> Vec<(&'static str, Scene)> {
             "faint thin strokes",
             page(faint(fan(1.02).collect()).collect()),
         ),
-        ("arcs", of_marks(mixed(&arcs))),
-        ("cubic curves", of_marks(mixed(&cubics))),
         (
             "partly off the page",
             page(vec![
@@ -330,6 +328,8 @@ fn kinds() -> Vec<(&'static str, Scene)> {
         ),
     ];
     kinds.extend(bent);
+    kinds.push(("arcs", of_marks(mixed(&arcs))));
+    kinds.push(("cubic curves", of_marks(mixed(&cubics))));
     kinds.push(("bands", page(bands())));
     kinds
 }
