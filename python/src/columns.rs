@@ -11,8 +11,8 @@ use strokefit::scene::{Area, Mark, Path, PathPoint, PointKind, Scene, Stroke};
 use crate::failure::Failure;
 
 /// Points (m × 2, px), which of them are on their path (m), their kinds (m), where each stroke's points begin (n + 1), which
-/// paths are closed (n), widths (n, px), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0),
-/// for n strokes of m points.
+/// paths are closed (n), widths (n, px), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n,
+/// from 0), for n strokes of m points.
 pub(crate) type StrokeColumns<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<bool>>,
@@ -27,8 +27,8 @@ pub(crate) type StrokeColumns<'py> = (
 );
 
 /// Points (m × 2, px), which of them are on their ring (m), their kinds (m), where each ring's points begin (k + 1), where each
-/// area's rings begin (n + 1), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0), for n areas of
-/// k rings of m points.
+/// area's rings begin (n + 1), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n, from 0), for
+/// n areas of k rings of m points.
 pub(crate) type AreaColumns<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<bool>>,
@@ -61,7 +61,7 @@ pub(crate) type MarkColumns<'py> = (
 pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns<'py>> {
     let scene = scene.clone().filled();
     let points = || scene.marks().flat_map(Mark::paths).flat_map(Path::points);
-    let is_mixed = points().any(|point| matches!(point.kind, PointKind::Cubic | PointKind::Arc));
+    let is_mixed = !points().all(|point| point.kind.is_quadratic());
     let (mut rings, mut end) = (Vec::new(), 0);
     for mark in scene.marks() {
         for (k, path) in mark.paths().iter().enumerate() {

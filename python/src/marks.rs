@@ -339,13 +339,13 @@ fn check_path<T: Real>(row: &Row<'_, T>, i: usize) -> PyResult<()> {
     let paths = start.zip(end.chain((row.rings.is_empty()).then_some(row.points.len())));
     for (start, end) in paths {
         let kinds = &row.kinds[start..end];
-        let is_path = || PointKind::check(kinds, row.closed);
-        if end - start <= MAX_POINTS && is_path().is_ok() {
+        let is_few = end - start <= MAX_POINTS;
+        if is_few && PointKind::check(kinds, row.closed).is_ok() {
             continue;
         }
         // Says what is wrong.
         let point = |&kind: &PointKind| PathPoint {
-            at: Point::new(0.0, 0.0),
+            at: Point::ZERO,
             kind,
         };
         let path = Path::new(kinds.iter().map(point).collect(), row.closed);

@@ -49,33 +49,40 @@ fn push(file: &mut File, layer: &str, path: &Path, sheet: &Sheet<'_>) {
         return file.line(layer, at(line.p0), at(line.p1));
     }
     let mut vertices: Vec<Vertex> = Vec::new();
-    let mut end = None;
-    for piece in pieces {
-        let mut push_curve = |curve: QuadBez| {
-            let curve = QuadBez::new(at(curve.p0), at(curve.p1), at(curve.p2));
-            arcs::push(&mut vertices, curve, TOLERANCE, DEEPEST);
-        };
-        match piece {
-            PathPiece::Quad(curve) => push_curve(curve),
-            PathPiece::Cubic(curve) => {
-                let quads = curve.to_quads(TOLERANCE / sheet.mm());
-                quads.for_each(|(.., quad)| push_curve(quad));
-            }
-            PathPiece::Line(line) => vertices.push(Vertex {
-                at: at(line.p0),
-                bulge: 0.0,
-            }),
-            // Seen with y up, what turns clockwise turns to the right.
-            PathPiece::Arc(arc) => vertices.push(Vertex {
-                at: at(arc.from),
-                bulge: -arc.bulge(),
-            }),
-        }
-        end = Some(at(piece.end()));
+    for piece in &pieces {
+        push_piece(&mut vertices, piece, sheet.mm(), at);
     }
     // A closed polyline goes back to its first vertex by itself.
     if !path.is_closed() {
+        let end = pieces.last().map(|last| at(last.end()));
         vertices.extend(end.map(|at| Vertex { at, bulge: 0.0 }));
     }
     file.polyline(layer, &vertices, path.is_closed());
+}
+
+/// Appends the vertices of a piece without its end. A px is so many `mm`, and `at` gives the place in the file.
+fn push_piece(vertices: &mut Vec<Vertex>, piece: &PathPiece, mm: f64, at: impl Fn(Point) -> Point) {
+    let mut push_curve = |curve: QuadBez, tolerance: f64| {
+        let curve = QuadBez::new(at(curve.p0), at(curve.p1), at(curve.p2));
+        arcs::push(vertices, curve, tolerance, DEEPEST);
+    };
+    match piece {
+        PathPiece::Quad(curve) => push_curve(*curve, TOLERANCE),
+        PathPiece::Cubic(_) => {
+            // Half of the tolerance for the quadratic curves, half for their arcs.
+            let half = 0.5 * TOLERANCE;
+            let quads = piece.quads(half / mm).into_iter();
+            quads.for_each(|quad| push_curve(quad, half));
+        }
+        PathPiece::Line(line) => vertices.push(Vertex {
+            at: at(line.p0),
+            bulge: 0.0,
+        }),
+        // Both bulges are tangents of a quarter of the sweep. That of a path is positive clockwise on the page; that of a DXF is
+        // positive counter-clockwise, seen with y up, and the flip of y does not change what is seen.
+        PathPiece::Arc(arc) => vertices.push(Vertex {
+            at: at(arc.from),
+            bulge: -arc.bulge(),
+        }),
+    }
 }

@@ -13,13 +13,14 @@ use linesweeper::topology::{Topology, WindingNumber};
 use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
 use crate::scene::{
-    Area, Cap, Mark, Path, PathPoint, Scene, Stage, Stroke, color, distinct_colors, quantum,
+    Area, Cap, Mark, Path, PathPiece, PathPoint, Scene, Stage, Stroke, color, distinct_colors,
+    quantum,
 };
 
 /// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
 const NEAR: f64 = 1e-4;
 
-/// Largest distance of quadratic curves from a cubic one that they stand for, px.
+/// Largest distance of quadratic curves from a cubic one that they stand for, px: a tenth of what files hold.
 const QUADS: f64 = 1e-3;
 
 /// Smaller pieces are traces of rounding, px².
@@ -161,8 +162,8 @@ fn ring(path: &BezPath) -> Option<Path> {
             PathEl::MoveTo(p) | PathEl::LineTo(p) => points.push(PathPoint::on(p)),
             PathEl::QuadTo(knee, p) => points.extend([PathPoint::off(knee), PathPoint::on(p)]),
             PathEl::CurveTo(c, d, p) => {
-                // Most of them are parts of quadratic curves.
-                for (_, _, quad) in CubicBez::new(last, c, d, p).to_quads(QUADS) {
+                // The sweep makes cubic curves of all. Most are parts of quadratic ones, and become one again.
+                for quad in PathPiece::Cubic(CubicBez::new(last, c, d, p)).quads(QUADS) {
                     points.extend([PathPoint::off(quad.p1), PathPoint::on(quad.p2)]);
                 }
             }
@@ -230,5 +231,78 @@ impl WindingNumber for Windings {
                 .into_iter()
                 .collect(),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math;
+    use kurbo::{Line, ParamCurve, ParamCurveNearest};
+
+    /// Places on a piece, which go from its start to its end in so many steps.
+    fn samples(piece: PathPiece, steps: u32) -> Vec<Point> {
+        let share = |step: u32| f64::from(step) / f64::from(steps);
+        let at = |t: f64| match piece {
+            PathPiece::Line(line) => line.eval(t),
+            PathPiece::Quad(curve) => curve.eval(t),
+            PathPiece::Cubic(curve) => curve.eval(t),
+            PathPiece::Arc(arc) => {
+                let (sin, cos) = math::sin_cos(t * arc.sweep());
+                let leg = arc.from - arc.center();
+                let turned = (leg.x * cos - leg.y * sin, leg.x * sin + leg.y * cos);
+                arc.center() + kurbo::Vec2::from(turned)
+            }
+        };
+        (0..=steps).map(share).map(at).collect()
+    }
+
+    /// Farthest that one of some places is from all lines, px.
+    fn farthest(places: impl Iterator<Item = Point>, lines: &[Line]) -> f64 {
+        let away = |p: Point| {
+            let all = lines.iter().map(|line| line.nearest(p, 0.0).distance_sq);
+            all.fold(f64::INFINITY, f64::min).sqrt()
+        };
+        places.map(away).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn cut_outs_are_within_a_hundredth_of_a_px_of_curves_and_arcs() {
+        for size in [20.0, 300.0, 2000.0] {
+            let at = |x: f64, y: f64| Point::new(x * size, y * size);
+            let points = vec![
+                PathPoint::on(at(0.2, 0.4)),
+                PathPoint::arc(at(0.5, 0.05)),
+                PathPoint::on(at(0.8, 0.4)),
+                PathPoint::cubic(at(1.0, 0.7)),
+                PathPoint::cubic(at(0.5, 0.5)),
+                PathPoint::on(at(0.6, 0.9)),
+                PathPoint::off(at(0.4, 0.95)),
+                PathPoint::on(at(0.3, 0.8)),
+                PathPoint::arc(at(0.28, 0.7)),
+                PathPoint::on(at(0.1, 0.6)),
+            ];
+            let ring = Path::new(points, true).unwrap();
+            let side = size as u32;
+            let scene = Scene {
+                stages: vec![Stage::from_iter([Area::plain(
+                    vec![ring.clone()],
+                    [0.0; 3],
+                    1.0,
+                )])],
+                ..Scene::empty(side, side, None)
+            };
+            let cut = cut_out(&scene).unwrap();
+            let cut: Vec<Path> = cut.marks().flat_map(Mark::paths).cloned().collect();
+            let given: Vec<Point> = ring.pieces().flat_map(|p| samples(p, 2000)).collect();
+            let chords = given.windows(2).map(|ends| Line::new(ends[0], ends[1]));
+            let back = farthest(
+                cut.iter().flat_map(|ring| ring.flattened(1e-3)),
+                &chords.collect::<Vec<_>>(),
+            );
+            let lines: Vec<Line> = cut.iter().flat_map(|ring| ring.lines(1e-4)).collect();
+            let there = farthest(given.into_iter().step_by(10), &lines);
+            assert!(there < 0.01 && back < 0.01, "{size}: {there} {back}");
+        }
     }
 }

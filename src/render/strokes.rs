@@ -190,8 +190,7 @@ impl<'a> StrokeRef<'a> {
 
     /// True if the path has cubic curves or arcs.
     pub fn is_mixed(&self) -> bool {
-        let is_other = |kind: &PointKind| matches!(kind, PointKind::Cubic | PointKind::Arc);
-        self.kinds.iter().any(is_other)
+        !self.kinds.iter().all(|kind| kind.is_quadratic())
     }
 
     /// True if every number is finite.

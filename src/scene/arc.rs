@@ -164,57 +164,63 @@ impl Arc {
     /// The points between `ends`, the rounded ends of the arc, of what a file has in its place: another arc, two or more of
     /// them, a cubic curve, or nothing for a line.
     pub(super) fn rounded(&self, ends: [Point; 2], grid: &Grid) -> Vec<Rounded> {
-        let halfway = self.halfway();
         let aim = Self {
             from: ends[0],
-            through: halfway,
+            through: self.halfway(),
             to: ends[1],
         };
-        let is_flat =
-            |arc: &Self| length(arc.halfway() - arc.from.midpoint(arc.to)) < 0.5 * grid.step();
-        if is_flat(self) {
+        if self.is_flat(grid) {
             return Vec::new();
         }
-        let bulge = aim.bulge();
-        if ends[0] != ends[1] && bulge.abs() < FLATTEST {
-            return match bezier(ends, bulge) {
+        if ends[0] != ends[1] && aim.bulge().abs() < FLATTEST {
+            return match bezier(ends, aim.bulge()) {
                 PathSeg::Cubic(curve) => {
                     vec![Rounded::Cubic([curve.p1, curve.p2].map(|p| grid.point(p)))]
                 }
                 _ => Vec::new(),
             };
         }
-        // Near a half circle a step of the radius moves the arc by many. Of what the radius rounded down and up can say, with
-        // either flag, the nearest is taken; if none is near, or none is read as it was written, each half is rounded by itself.
-        let steps = [grid.below(aim.radius()), grid.above(aim.radius())];
+        match aim.nearest_written(grid) {
+            // Rounded once more, it is the same.
+            Some(arc) if arc.is_flat(grid) => Vec::new(),
+            Some(arc) => vec![Rounded::Arc(arc.through)],
+            None => {
+                let middle = grid.point(aim.through);
+                let [first, second] = self.halves();
+                let mut points = first.rounded([ends[0], middle], grid);
+                points.push(Rounded::On(middle));
+                points.extend(second.rounded([middle, ends[1]], grid));
+                points
+            }
+        }
+    }
+
+    /// True if a line is within half a step of the grid.
+    fn is_flat(&self, grid: &Grid) -> bool {
+        length(self.halfway() - self.from.midpoint(self.to)) < 0.5 * grid.step()
+    }
+
+    /// The nearest arc of these ends that is read as it is written, if one is near.
+    fn nearest_written(&self, grid: &Grid) -> Option<Self> {
+        // Near a half circle a step of the radius moves the arc by many: the radius is rounded down and up, with either flag.
+        let steps = [grid.below(self.radius()), grid.above(self.radius())];
         let candidates = steps.into_iter().flat_map(|radius| {
             [false, true].map(|is_large| ArcNumbers {
                 radius: units(radius),
                 is_large,
-                is_clockwise: bulge > 0.0,
+                is_clockwise: self.bulge() > 0.0,
             })
         });
+        let ends = [self.from, self.to];
         let arcs = candidates.map(|numbers| Self::of_numbers(ends, numbers));
-        let away = |arc: &Self| length(arc.through - halfway);
+        let away = |arc: &Self| length(arc.through - self.through);
         let near = arcs.filter(|arc| {
             away(arc) <= BESIDE.max(STEPS * grid.step())
                 && arc.bulge().abs() >= FLATTEST
                 && arc.radius() <= MAX_COORDINATE
                 && Self::of_numbers(ends, arc.numbers()) == *arc
         });
-        if let Some(arc) = near.min_by(|a, b| away(a).total_cmp(&away(b))) {
-            // Rounded once more, it is the same.
-            return match is_flat(&arc) {
-                true => Vec::new(),
-                false => vec![Rounded::Arc(arc.through)],
-            };
-        }
-        let middle = grid.point(halfway);
-        let [first, second] = self.halves();
-        let mut points = first.rounded([ends[0], middle], grid);
-        points.push(Rounded::On(middle));
-        points.extend(second.rounded([middle, ends[1]], grid));
-        points
+        near.min_by(|a, b| away(a).total_cmp(&away(b)))
     }
 }
 

@@ -91,9 +91,8 @@ impl Path {
         if !self.pieces().any(|piece| cut(&piece).is_some()) {
             return self;
         }
-        let points = replaced(&self, |piece| {
-            cut(piece).unwrap_or_else(|| piece.between().collect())
-        });
+        let points =
+            self.rewritten(|piece| cut(piece).unwrap_or_else(|| piece.between().collect()));
         // Curves that were smooth together stay so; each round leaves fewer of them.
         Self::canonical(points, self.is_closed()).with_corners_for_cusps(grid)
     }
@@ -102,7 +101,7 @@ impl Path {
     fn without_between(&self, is_line: impl Fn(&PathPiece) -> bool) -> Option<Self> {
         // All on-points are written out first: without its control point, a curve would take its implied ends along.
         let lines = || {
-            replaced(self, |piece| match is_line(piece) {
+            self.rewritten(|piece| match is_line(piece) {
                 true => Vec::new(),
                 false => piece.between().collect(),
             })
@@ -131,19 +130,6 @@ impl Path {
         // `side` is a distance times the length of the first leg; so is the bound, a distance of 1e-9 px.
         self.is_closed() && self.points().iter().any(|p| side(p).abs() > least)
     }
-}
-
-/// All on-points of a path, implied ones included, with what `between` gives for each piece.
-fn replaced(path: &Path, between: impl Fn(&PathPiece) -> Vec<PathPoint>) -> Vec<PathPoint> {
-    let start = path
-        .pieces()
-        .next()
-        .map(|first| PathPoint::on(first.start()));
-    let rest = path.pieces().flat_map(|piece| {
-        let end = PathPoint::on(piece.end());
-        between(&piece).into_iter().chain([end])
-    });
-    start.into_iter().chain(rest).collect()
 }
 
 /// The `rounded` points of a path, whose arcs are those of the points as `given`, in the same order, that begins on the path.

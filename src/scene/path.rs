@@ -181,8 +181,7 @@ impl Path {
 
     /// True if it has cubic curves or arcs.
     pub(crate) fn is_mixed(&self) -> bool {
-        let is_other = |p: &PathPoint| matches!(p.kind, PointKind::Cubic | PointKind::Arc);
-        self.points.iter().any(is_other)
+        !self.points.iter().all(|p| p.kind.is_quadratic())
     }
 
     /// The path with quadratic curves at most `tolerance` px away from its cubic curves and arcs.
@@ -191,27 +190,31 @@ impl Path {
         if !self.is_mixed() {
             return self.clone();
         }
-        let segments = self.segments().map(|segment| (segment, segment.end()));
-        let rest = segments.flat_map(|(segment, end)| match segment {
-            PathSeg::Line(_) => vec![PathPoint::on(end)],
-            PathSeg::Quad(curve) => vec![PathPoint::off(curve.p1), PathPoint::on(end)],
-            PathSeg::Cubic(curve) => {
-                let quads = curve.to_quads(tolerance);
-                quads
-                    .flat_map(|(.., quad)| [PathPoint::off(quad.p1), PathPoint::on(quad.p2)])
-                    .collect()
-            }
-        });
-        let start = self
-            .pieces()
-            .next()
-            .map(|first| PathPoint::on(first.start()));
-        let mut points: Vec<PathPoint> = start.into_iter().chain(rest).collect();
+        let between = |piece: &PathPiece| {
+            let quads = piece.quads(tolerance).into_iter();
+            let points = quads.flat_map(|q| [PathPoint::on(q.p0), PathPoint::off(q.p1)]);
+            // The first of them starts where the piece does.
+            points.skip(1).collect()
+        };
+        let mut points = self.rewritten(between);
         // The last piece of a closed path ends at the first point.
         if self.closed {
             points.pop();
         }
         Self::of_points(points, self.closed)
+    }
+
+    /// All on-points, implied ones included, with what `between` gives for each piece. Those of a closed path end where they start.
+    pub(super) fn rewritten(
+        &self,
+        between: impl Fn(&PathPiece) -> Vec<PathPoint>,
+    ) -> Vec<PathPoint> {
+        let start = self.pieces().next().map(|first| first.start());
+        let rest = self.pieces().flat_map(|piece| {
+            let end = PathPoint::on(piece.end());
+            between(&piece).into_iter().chain([end])
+        });
+        start.map(PathPoint::on).into_iter().chain(rest).collect()
     }
 
     /// The path as `kurbo` has it. A closed one ends where it starts.

@@ -1,6 +1,6 @@
 //! The points of paths, and the lines, curves and arcs between them.
 
-use kurbo::{CubicBez, Line, PathSeg, QuadBez};
+use kurbo::{CubicBez, Line, ParamCurve, PathSeg, QuadBez};
 use serde::{Deserialize, Serialize};
 
 use super::arc::Arc;
@@ -34,25 +34,32 @@ impl PointKind {
         if is_on { Self::On } else { Self::Quad }
     }
 
+    /// True for the points of lines and quadratic curves.
+    pub fn is_quadratic(self) -> bool {
+        matches!(self, Self::On | Self::Quad)
+    }
+
     /// Refuses points of these kinds, in drawing order, if they make no path.
     ///
     /// # Errors
     /// [`ErrorKind::Config`] when an open path starts or ends off the path, or when between two on-points are others than
     /// points of quadratic curves, two of a cubic one, or one of an arc.
     pub fn check(kinds: &[Self], closed: bool) -> Result<()> {
-        let refused = |message: String| Err(Error::new(ErrorKind::Config, message));
         let ends_on = [kinds.first(), kinds.last()] == [Some(&Self::On); 2];
         if (!closed || kinds.len() == 1) && !ends_on {
             let message =
                 "an open path has to start and end with points on it: close it, or add an end";
-            return refused(message.into());
+            return Err(Error::new(ErrorKind::Config, message));
         }
-        if !kinds
-            .iter()
-            .any(|kind| matches!(kind, Self::Cubic | Self::Arc))
-        {
-            return Ok(());
+        match kinds.iter().all(|kind| kind.is_quadratic()) {
+            true => Ok(()),
+            false => Self::check_pieces(kinds),
         }
+    }
+
+    /// Refuses kinds among which are those of cubic curves or arcs, if something else than one piece is between two on-points.
+    fn check_pieces(kinds: &[Self]) -> Result<()> {
+        let refused = |message: String| Err(Error::new(ErrorKind::Config, message));
         let Some(first) = kinds.iter().position(|kind| *kind == Self::On) else {
             let message = "a path of cubic curves or arcs needs a point on it where each of them ends: add one";
             return refused(message.into());
@@ -60,19 +67,17 @@ impl PointKind {
         // A closed path goes on from its last point to its first, and so may what lies between two on-points.
         let (before, from) = kinds.split_at(first);
         let around = [from, before].concat();
-        let runs = around.split(|kind| *kind == Self::On);
-        for run in runs {
-            let is_one = match run {
-                [Self::Arc] | [Self::Cubic, Self::Cubic] => true,
-                _ => run.iter().all(|kind| *kind == Self::Quad),
-            };
-            if !is_one {
-                return refused(format!(
-                    "between two points on a path are {run:?}: give any number of Quad, two Cubic or one Arc"
-                ));
-            }
+        let is_piece = |run: &[Self]| match run {
+            [Self::Arc] | [Self::Cubic, Self::Cubic] => true,
+            _ => run.iter().all(|kind| *kind == Self::Quad),
+        };
+        let mut runs = around.split(|kind| *kind == Self::On);
+        match runs.find(|run| !is_piece(run)) {
+            Some(run) => refused(format!(
+                "between two points on a path are {run:?}: give any number of Quad, two Cubic or one Arc"
+            )),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 
@@ -198,6 +203,46 @@ impl PathPiece {
             .into_iter()
             .chain(arc.into_iter().flat_map(Arc::beziers))
     }
+
+    /// Quadratic curves at most `tolerance` px away from the piece, unless it is beyond all pages; none for a line.
+    pub(crate) fn quads(self, tolerance: f64) -> Vec<QuadBez> {
+        let quads = self.segments().map(|segment| match segment {
+            PathSeg::Line(_) => Vec::new(),
+            PathSeg::Quad(curve) => vec![curve],
+            PathSeg::Cubic(curve) => quads(curve, tolerance),
+        });
+        quads.flatten().collect()
+    }
+}
+
+/// Most quadratic curves in the place of a cubic one: more than one of the largest coordinates takes within 0.02 px.
+const MOST_QUADS: u16 = 4096;
+
+/// Quadratic curves in the place of a cubic one, each for an equal step of its parameter. Those of `kurbo` are the same, but their
+/// number is taken from a power of the platform, and without bound.
+fn quads(curve: CubicBez, tolerance: f64) -> Vec<QuadBez> {
+    // The control points of quadratic curves that leave one end, and the other, as the cubic one does. Their distance is half of
+    // the third difference.
+    let knees = |part: &CubicBez| {
+        let knee = |p: Point, end: Point| 0.5 * (3.0 * p.to_vec2() - end.to_vec2());
+        [knee(part.p1, part.p0), knee(part.p2, part.p3)]
+    };
+    let [first, second] = knees(&curve);
+    // With the control point halfway, the distance is √3/36 of the third difference, of which an nth of the curve has an n³th.
+    let third = 2.0 * (second - first);
+    let is_enough = |count: &u16| {
+        let count = f64::from(*count);
+        let most = tolerance * count * count * count;
+        third.hypot2() <= 432.0 * most * most
+    };
+    let count = (1..MOST_QUADS).find(is_enough).unwrap_or(MOST_QUADS);
+    let part = |k: u16| {
+        let [from, to] = [k, k + 1].map(|k| f64::from(k) / f64::from(count));
+        let part = curve.subsegment(from..to);
+        let [first, second] = knees(&part);
+        QuadBez::new(part.p0, (0.5 * (first + second)).to_point(), part.p3)
+    };
+    (0..count).map(part).collect()
 }
 
 /// The pieces of a path that are still to come.
@@ -275,5 +320,53 @@ impl Iterator for Pieces<'_> {
         };
         self.at = Some(piece.end());
         Some(piece)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+    use kurbo::ParamCurve;
+
+    fn random(seed: u64) -> CubicBez {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| {
+            let [x, y] = [0, 1].map(|axis| 200.0 * f64::from(rng::draw(axis, seed, k, 0)));
+            Point::new(x, y)
+        });
+        CubicBez::new(a, b, c, d)
+    }
+
+    #[test]
+    fn quadratic_curves_are_near_the_cubic_one_and_meet() {
+        for curve in (0..100).map(random) {
+            for tolerance in [1e-3, 0.1, 10.0] {
+                let quads = PathPiece::Cubic(curve).quads(tolerance);
+                let share = 1.0 / quads.len() as f64;
+                for (i, quad) in quads.iter().enumerate() {
+                    for t in [0.0, 0.2, 0.5, 0.7, 1.0] {
+                        let at = curve.eval(share * (i as f64 + t));
+                        assert!((quad.eval(t) - at).hypot() < 1.000_001 * tolerance + 1e-9);
+                    }
+                }
+                let ends = quads.windows(2).map(|pair| [pair[0].p2, pair[1].p0]);
+                assert!(ends.into_iter().all(|[a, b]| a == b));
+                assert_eq!(
+                    [quads[0].p0, quads[quads.len() - 1].p2],
+                    [curve.p0, curve.p3]
+                );
+                let expected = curve.to_quads(tolerance).map(|(.., quad)| quad);
+                assert_eq!(quads, expected.collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn a_curve_beyond_all_pages_is_few_quadratic_ones() {
+        for far in [1e30, 1e200, f64::INFINITY, f64::NAN] {
+            let curve = CubicBez::new((0.0, 0.0), (far, 0.0), (0.0, far), (1.0, 1.0));
+            let count = PathPiece::Cubic(curve).quads(0.02).len();
+            assert!(count <= usize::from(MOST_QUADS));
+        }
     }
 }
