@@ -371,21 +371,25 @@ impl Piece {
                     [0, 1].map(|axis| (0..4).map(|k| weights[k] * corners[k][axis]).sum())
                 }));
             }
-            Between::Arc(through) => {
-                let arc = self.arc(points, through);
-                match self.spread(stroke, &arc, steps) {
-                    Some(spread) => {
-                        let places = spread.weights().map(|weights| arcs::vertex(&arc, weights));
-                        vertices.extend(places.map(|at| math::xy(at.to_point())));
-                    }
-                    None => Self {
-                        between: Between::Line,
-                        ..*self
-                    }
-                    .flatten(stroke, steps, vertices),
-                }
-            }
+            Between::Arc(through) => self.flatten_arc(stroke, through, steps, vertices),
         }
+    }
+
+    /// As [`flatten`](Self::flatten), of an arc with the point `through`.
+    fn flatten_arc(
+        &self,
+        stroke: StrokeRef<'_>,
+        through: usize,
+        steps: usize,
+        vertices: &mut Vec<[f32; 2]>,
+    ) {
+        let arc = self.arc(stroke.points, through);
+        let Some(spread) = self.spread(stroke, &arc, steps) else {
+            let between = Between::Line;
+            return Self { between, ..*self }.flatten(stroke, steps, vertices);
+        };
+        let places = spread.weights().map(|weights| arcs::vertex(&arc, weights));
+        vertices.extend(places.map(|at| math::xy(at.to_point())));
     }
 
     /// The weights of the start, the control point and the end in the vertex after `step` of so many segments of a line or a

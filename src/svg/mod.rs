@@ -34,9 +34,9 @@
 //!   stroke with [`Cap::Butt`](crate::scene::Cap::Butt). It shares no element with others. A
 //!   layer with no other stroke has neither of these attributes, nor do its bands: CairoSVG takes no `butt` inside of `round`.
 //! - Each `M` begins a stroke or a ring, `L` draws lines, `Q` and `T` quadratic curves, `C` and `S` cubic ones, `A` arcs of
-//!   circles, and `z` closes a path. In areas, and only there, `H` and `V` draw horizontal and vertical lines. The numbers of a step are absolute or, after a small
-//!   letter, relative, whichever is shorter. A step has no letter of its own if the last one serves and nothing gets
-//!   longer, but never after `M`.
+//!   circles, and `z` closes a path. In areas, and only there, `H` and `V` draw horizontal and vertical lines. The numbers of a
+//!   step are absolute or, after a small letter, relative, whichever is shorter. A step has no letter of its own if the last
+//!   one serves and nothing gets longer, but never after `M`.
 //! - `T` draws a curve whose control point mirrors the last one. So a run of off-points takes one pair of numbers for
 //!   each, and one more at its end: the on-points that they imply are in the file, and off-points are rounded so
 //!   that these are exact.
@@ -44,7 +44,8 @@
 //! - An arc, `A r r 0 large sweep x y`, goes through the point halfway that its radius and flags give exactly. So an arc is
 //!   rounded to a radius of as many decimals; where none is near, as beside half circles, its halves are, and a very flat one
 //!   is a cubic curve. Of a half circle the radius is half the chord, or fewer px, which SVG enlarges.
-//! - A quadratic curve that turns back within 0.02 px is written as two lines, and a cubic one as two curves, because Cairo leaves a half of it out.
+//! - A quadratic curve that turns back within 0.02 px is written as two lines, and a cubic one as two curves, because Cairo
+//!   leaves a half of it out.
 //! - The layer has `stroke-linejoin="round"` if a stroke in it has a join, and none of these attributes if it has only
 //!   areas.
 //! - In the smallest form, neighbouring strokes of equal colour, width and opacity are one path, `M1 2L3 4M7 8l1 2`,
@@ -68,9 +69,9 @@
 //! [`Form::Outlines`] writes the filled outline of each stroke: a circle, two lines and two arcs, or an area. [`read`] takes
 //! all of them for areas. Areas stay as they are.
 //!
-//! A path with any other step (an arc of an ellipse, a `T` after a line, an `S` after a `Q`) is not of this dialect, and neither is one of
-//! more than [`MAX_POINTS`](crate::scene::MAX_POINTS) points: [`read`] refuses the file, and a [`Document`] keeps it as
-//! it is, below new strokes. Reading leaves out points without effect: points that coincide, and on-points
+//! A path with any other step (an arc of an ellipse, a `T` after a line, an `S` after a `Q`) is not of this dialect, and
+//! neither is one of more than [`MAX_POINTS`](crate::scene::MAX_POINTS) points: [`read`] refuses the file, and a [`Document`]
+//! keeps it as it is, below new strokes. Reading leaves out points without effect: points that coincide, and on-points
 //! exactly halfway between two off-points.
 //!
 //! Reading returns the scene to the bit as it was written: quantised, and arranged if the form asks for it. It takes numbers,

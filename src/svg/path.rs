@@ -61,31 +61,10 @@ impl Writer {
         // The last control point of the last curve; after a line, an arc or a move there is none to mirror.
         let mut control = Control::default();
         while let Some(piece) = pieces.next() {
-            let [from, to] = [piece.start(), piece.end()].map(place);
-            // T and S take the control point opposite of the last one, which is exact in whole units.
-            let opposite = control.map(|last| last.map(|control| mirrored(control, from)));
-            control = Control::default();
-            match piece {
-                // The command that closes the path draws this line.
-                PathPiece::Line(_) if path.is_closed() && pieces.peek().is_none() => {}
-                PathPiece::Line(_) => self.push_step(self.line_letter(from, to), &[to]),
-                PathPiece::Quad(curve) => {
-                    let knee = place(curve.p1);
-                    match opposite[QUAD] == Some(knee) {
-                        true => self.push_step('T', &[to]),
-                        false => self.push_step('Q', &[knee, to]),
-                    }
-                    control[QUAD] = Some(knee);
-                }
-                PathPiece::Cubic(curve) => {
-                    let [first, second] = [curve.p1, curve.p2].map(place);
-                    match opposite[CUBIC] == Some(first) {
-                        true => self.push_step('S', &[second, to]),
-                        false => self.push_step('C', &[first, second, to]),
-                    }
-                    control[CUBIC] = Some(second);
-                }
-                PathPiece::Arc(arc) => self.push_arc(arc.numbers(), to),
+            // The command that closes the path draws its last line.
+            let is_closing = path.is_closed() && pieces.peek().is_none();
+            if !(is_closing && matches!(piece, PathPiece::Line(_))) {
+                control = self.push_piece(piece, control);
             }
         }
         if path.is_closed() {
@@ -93,6 +72,35 @@ impl Writer {
             // After z the current point is the start of the path.
             (self.at, self.letter) = (Some(first), None);
         }
+    }
+
+    /// Appends a piece behind one with these control points, and returns its own.
+    fn push_piece(&mut self, piece: PathPiece, last: Control) -> Control {
+        let [from, to] = [piece.start(), piece.end()].map(place);
+        // T and S take the control point opposite of the last one, which is exact in whole units.
+        let opposite = last.map(|last| last.map(|control| mirrored(control, from)));
+        let mut own = Control::default();
+        match piece {
+            PathPiece::Line(_) => self.push_step(self.line_letter(from, to), &[to]),
+            PathPiece::Quad(curve) => {
+                let knee = place(curve.p1);
+                match opposite[QUAD] == Some(knee) {
+                    true => self.push_step('T', &[to]),
+                    false => self.push_step('Q', &[knee, to]),
+                }
+                own[QUAD] = Some(knee);
+            }
+            PathPiece::Cubic(curve) => {
+                let [first, second] = [curve.p1, curve.p2].map(place);
+                match opposite[CUBIC] == Some(first) {
+                    true => self.push_step('S', &[second, to]),
+                    false => self.push_step('C', &[first, second, to]),
+                }
+                own[CUBIC] = Some(second);
+            }
+            PathPiece::Arc(arc) => self.push_arc(arc.numbers(), to),
+        }
+        own
     }
 
     /// The letter of a line.
@@ -124,18 +132,12 @@ impl Writer {
     /// Appends an arc.
     fn push_arc(&mut self, numbers: ArcNumbers, to: Place) {
         self.push_shortest('A', Some(to), |writer, origin| {
-            let mut text = String::new();
-            for separator in ["", " "] {
-                text += separator;
-                writer.unit.push(&mut text, numbers.radius);
-            }
-            let flags = [numbers.is_large, numbers.is_clockwise].map(u8::from);
-            text += &format!(" 0 {} {}", flags[0], flags[1]);
+            let mut radius = String::new();
+            writer.unit.push(&mut radius, numbers.radius);
+            let [large, sweep] = [numbers.is_large, numbers.is_clockwise].map(u8::from);
             let end = writer.numbers('A', origin, &[to]);
-            if !end.starts_with('-') {
-                text.push(' ');
-            }
-            text + &end
+            let separator = if end.starts_with('-') { "" } else { " " };
+            format!("{radius} {radius} 0 {large} {sweep}{separator}{end}")
         });
     }
 

@@ -214,62 +214,51 @@ impl Knots<'_> {
     /// The vertices of segments that keep within `flatness` of the path, px. The vertices of a closed path end where they start.
     fn flattened(self, flatness: f64) -> Vec<(Point, Mean)> {
         let knots = self.with_implied();
-        let placed = |mean: Mean| (mean.place(self.points), mean);
-        let mut vertices = vec![placed(knots[0].0.clone())];
-        let mut at = 1;
-        while at < knots.len() {
-            let mean = |ahead: usize| &knots[at + ahead - 1].0;
-            let place = |ahead: usize| mean(ahead).place(self.points).to_vec2();
-            let bend =
-                |first: usize| (place(first) - place(first + 1) * 2.0 + place(first + 2)).hypot();
-            at += match knots[at].1 {
-                PointKind::On => {
-                    vertices.push(placed(mean(1).clone()));
-                    1
-                }
-                // Each curve has its control points between two points on the path.
-                PointKind::Quad => {
-                    let steps = steps(bend(0), flatness);
-                    let curve = |k: usize| {
-                        let t = k as f64 / steps as f64;
-                        let s = 1.0 - t;
-                        weighted([(mean(0), s * s), (mean(1), 2.0 * s * t), (mean(2), t * t)])
-                    };
-                    vertices.extend((1..=steps).map(curve).map(placed));
-                    2
-                }
-                PointKind::Cubic => {
-                    let steps = steps(3.0 * bend(0).max(bend(1)), flatness);
-                    let curve = |k: usize| {
-                        let t = k as f64 / steps as f64;
-                        let s = 1.0 - t;
-                        let [of_c, of_d] = [3.0 * s * s * t, 3.0 * s * t * t];
-                        let ends = [(mean(0), s * s * s), (mean(3), t * t * t)];
-                        weighted([ends[0], (mean(1), of_c), (mean(2), of_d), ends[1]])
-                    };
-                    vertices.extend((1..=steps).map(curve).map(placed));
-                    3
-                }
-                PointKind::Arc => {
-                    let [from, through, to] = [0, 1, 2].map(|ahead| place(ahead).to_point());
-                    let arc = Arc { from, through, to };
-                    let Some(spread) = Spread::of(&arc, flatness, 1) else {
-                        vertices.push(placed(mean(2).clone()));
-                        at += 2;
-                        continue;
-                    };
-                    vertices.extend(spread.weights().map(|weights| {
-                        let ends = [mean(0), mean(1), mean(2)].into_iter();
-                        let parts = ends.zip(arcs::slopes(&arc, weights));
-                        let parts = parts.map(|(mean, slope)| (mean.0[0].0, slope));
-                        let place = arcs::vertex(&arc, weights).to_point();
-                        (place, Mean(parts.collect()))
-                    }));
-                    2
-                }
-            };
+        let mut vertices = vec![self.placed(knots[0].0.clone())];
+        let mut from = 0;
+        while from + 1 < knots.len() {
+            let kind = knots[from + 1].1;
+            // Each piece has the points of its kind between two points on the path.
+            let to = from
+                + match kind {
+                    PointKind::On => 1,
+                    PointKind::Quad | PointKind::Arc => 2,
+                    PointKind::Cubic => 3,
+                };
+            let own: Vec<&Mean> = knots[from..=to].iter().map(|(mean, _)| mean).collect();
+            vertices.extend(self.piece(kind, &own, flatness));
+            from = to;
         }
         vertices
+    }
+
+    /// The vertices of the piece of these knots behind its start.
+    fn piece(self, kind: PointKind, knots: &[&Mean], flatness: f64) -> Vec<(Point, Mean)> {
+        let places = knots.iter().map(|mean| mean.place(self.points));
+        let at: Vec<Vec2> = places.map(Point::to_vec2).collect();
+        let bend = |i: usize| (at[i] - at[i + 1] * 2.0 + at[i + 2]).hypot();
+        let line = || vec![self.placed(knots[knots.len() - 1].clone())];
+        match kind {
+            PointKind::On => line(),
+            PointKind::Quad => self.curve(knots, steps(bend(0), flatness)),
+            PointKind::Cubic => self.curve(knots, steps(3.0 * bend(0).max(bend(1)), flatness)),
+            PointKind::Arc => {
+                let [from, through, to] = [0, 1, 2].map(|i| at[i].to_point());
+                let arc = Arc { from, through, to };
+                let spread = Spread::of(&arc, flatness, 1);
+                spread.map_or_else(line, |spread| along(&arc, spread, knots))
+            }
+        }
+    }
+
+    /// The vertices of a Bézier curve at so many steps of its parameter.
+    fn curve(self, knots: &[&Mean], steps: usize) -> Vec<(Point, Mean)> {
+        let vertex = |k: usize| self.placed(bernstein(knots, k as f64 / steps as f64));
+        (1..=steps).map(vertex).collect()
+    }
+
+    fn placed(self, mean: Mean) -> (Point, Mean) {
+        (mean.place(self.points), mean)
     }
 
     /// The points with all implied ones, each with its kind. The first and the last are on the path.
@@ -319,11 +308,28 @@ fn vector([x, y]: [f64; 2]) -> Vec2 {
     Vec2::new(x, y)
 }
 
-/// The mean of these means by their weights.
-fn weighted<const N: usize>(parts: [(&Mean, f64); N]) -> Mean {
+/// The vertices along an arc, whose knots are points.
+fn along(arc: &Arc, spread: Spread, knots: &[&Mean]) -> Vec<(Point, Mean)> {
+    let vertex = |weights: [f64; 2]| {
+        let parts = knots.iter().zip(arcs::slopes(arc, weights));
+        let parts = parts.map(|(mean, slope)| (mean.0[0].0, slope));
+        let place = arcs::vertex(arc, weights).to_point();
+        (place, Mean(parts.collect()))
+    };
+    spread.weights().map(vertex).collect()
+}
+
+/// The vertex at the parameter `t` of a quadratic or cubic Bézier curve.
+fn bernstein(knots: &[&Mean], t: f64) -> Mean {
+    let s = 1.0 - t;
+    let shares = match knots.len() {
+        3 => vec![s * s, 2.0 * s * t, t * t],
+        _ => vec![s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t],
+    };
+    let parts = knots.iter().zip(shares);
     let weighted =
-        parts.map(|(mean, share)| mean.0.iter().map(move |&(i, weight)| (i, weight * share)));
-    Mean(weighted.into_iter().flatten().collect())
+        parts.flat_map(|(mean, share)| mean.0.iter().map(move |&(i, weight)| (i, weight * share)));
+    Mean(weighted.collect())
 }
 
 #[cfg(test)]
