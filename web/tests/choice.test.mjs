@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { drawn, mostLike, withoutMarks } from "../../src/view/page/choice.js";
-import { counted, covers, markAt } from "../../src/view/page/picture.js";
+import { bounds, counted, covers, markAt } from "../../src/view/page/picture.js";
 
 const line = (x, color = "#102030", radius = 2) => [[x, 0, x, 40], radius, color, 1, "oo"];
 const numbered = (...marks) => marks.map((mark, k) => ({ mark, number: k + 1, stage: 1 }));
@@ -48,6 +48,20 @@ test("an area is hit where it is filled, and its topmost mark is found", () => {
   assert.equal(markAt(numbered(frame, line(2)), 10, 10), undefined);
 });
 
+test("cubic curves and arcs are hit where they are, and lie in their bounds", () => {
+  // Three quarters of a circle around (10, 10), whose points have a smaller box, and a cubic curve whose top is at y = 7.5.
+  const bow = [[20, 10, 10 - 50 ** 0.5, 10 + 50 ** 0.5, 10, 0], 1, "#000000", 1, "oao"];
+  const hits = [[10, 20.8], [-0.8, 10], [10, 18.8], [17, 3]].map(([x, y]) => covers(bow, x, y));
+  assert.deepEqual(hits, [true, true, false, false]);
+  const box = bounds(bow);
+  [-1, -1, 21, 21].forEach((side, k) => assert.ok((side - box[k]) * (k < 2 ? 1 : -1) >= -1e-3 && Math.abs(side - box[k]) < 0.5, `${box}`));
+  const arch = [[0, 0, 0, 10, 20, 10, 20, 0], 0, "#000000", 1, "obboz"];
+  assert.deepEqual([[10, 7.3], [10, 7.7], [1, 3]].map(([x, y]) => covers(arch, x, y)), [true, false, true]);
+  // The other way around the same three points, the arc is the same.
+  const turned = [[10, 0, 10 - 50 ** 0.5, 10 + 50 ** 0.5, 20, 10], 1, "#000000", 1, "oao"];
+  assert.deepEqual([[10, 20.8], [17, 3]].map(([x, y]) => covers(turned, x, y)), [true, false]);
+});
+
 test("marks are counted in words", () => {
   const lists = [[], [line(1)], [frame], [line(1), line(2), frame, drop]];
   assert.deepEqual(lists.map(counted), ["0 strokes", "1 stroke", "1 area", "2 areas, 2 strokes"]);
@@ -75,6 +89,9 @@ test("paths of every kind are written as SVG", () => {
     [[0, 0, 10, 0, 10, 10], 1, "#000000", 1, "oooz"],
     frame,
     drop,
+    [[0, 0, 0, 10, 20, 10, 20, 0, 30, 10], 1, "#000000", 1, "obboo"],
+    [[0, 0, 5, 0, 9, 0], 1, "#000000", 1, "oao"],
+    [[0, 0, 1, 0.1, 2, 0], 1, "#000000", 1, "oao"],
   ].map((mark) => ({ mark, stage: 1 }));
   const text = drawn({ width: 30, height: 20, background: "#eeeeee", marks });
   for (const part of [
@@ -84,6 +101,10 @@ test("paths of every kind are written as SVG", () => {
     'd="M0 0L10 0L10 10L0 0Z"',
     '<path d="M0 0L20 0L20 20L0 20L0 0ZM5 5L5 15L15 15L15 5L5 5Z" fill="#204060"/>',
     '<path d="M30 0L50 0Q40 30 30 0Z" fill="#a03010" fill-opacity="0.5"/>',
+    'd="M0 0C0 10 20 10 20 0L30 10"',
+    // An arc of three points in a row is a line, and another one cubic curves.
+    'd="M0 0L9 0"',
+    'd="M0 0C0.66 0.13 1.34 0.13 2 0"',
   ]) {
     assert.ok(text.includes(part), `${part} is not in ${text}`);
   }

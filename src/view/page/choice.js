@@ -1,6 +1,6 @@
 // Statements on single marks: which one of another drawing they hold for, and the file without some of them.
 
-import { isArea, walks } from "./picture.js";
+import { bounds, isArea, walks } from "./picture.js";
 
 // Distance from which two marks are not taken for the same one, in widths and colours as `unlike` counts them.
 const STRANGER = 40;
@@ -80,10 +80,9 @@ function element(mark, id) {
 
 // The elements of a shadow, whose filter reaches as far as its blur.
 function blurred([mark, blur], number) {
-  const places = mark[0], reach = 3 * blur;
-  const ends = [0, 1].map((axis) => places.filter((_, k) => k % 2 === axis));
-  const low = ends.map((along) => Math.floor(Math.min(...along) - reach));
-  const high = ends.map((along) => Math.ceil(Math.max(...along) + reach));
+  const box = bounds(mark), reach = 3 * blur;
+  const low = box.slice(0, 2).map((v) => Math.floor(v - reach));
+  const high = box.slice(2).map((v) => Math.ceil(v + reach));
   const place = `x="${low[0]}" y="${low[1]}" width="${high[0] - low[0]}" height="${high[1] - low[1]}"`;
   const kind = 'filterUnits="userSpaceOnUse" color-interpolation-filters="sRGB"';
   const filter = `<filter id="blur-${number}" ${kind} ${place}><feGaussianBlur stdDeviation="${short(blur)}"/></filter>`;
@@ -104,7 +103,7 @@ function gradient({ axis, stops }, id) {
 
 const short = (value) => Number(value.toFixed(2));
 
-// Control points follow each other; on-points are joined by lines to what comes before them.
+// A piece of one place is a line, of two a quadratic curve, of three a cubic one.
 function data({ start, pieces, closed }) {
   const place = ([x, y]) => `${short(x)} ${short(y)}`;
   const parts = pieces.map((piece) => " LQC"[piece.length] + piece.map(place).join(" "));

@@ -1,7 +1,8 @@
 // Marks on canvases: strokes, and areas, which are filled by the nonzero rule. A mark is [points, radius, colour, opacity,
 // kinds], back to front as in the SVG; points are x, y, x, y, … in px of the picture, and the radius of an area is 0. Kinds
 // has a letter for each point, "o" on the path, "c" for the control point of a quadratic curve, "b" for one of a cubic curve
-// and "a" for a point of an arc between its ends, and then "z" if the path is closed, and so after the points of each ring of an area. An area with a gradient has that as a sixth.
+// and "a" for a point of an arc between its ends, and then "z" if the path is closed, and so after the points of each ring of
+// an area. An area with a gradient has that as a sixth.
 
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
@@ -213,12 +214,12 @@ function polyline({ start, pieces }) {
   return line;
 }
 
-function chords([ax, ay], piece) {
+function chords(start, piece) {
   if (piece.length === 1) return piece;
-  const [[cx, cy], [bx, by]] = piece;
   return Array.from({ length: CHORDS }, (_, i) => {
     const t = (i + 1) / CHORDS, u = 1 - t;
-    return [ax * u * u + 2 * cx * u * t + bx * t * t, ay * u * u + 2 * cy * u * t + by * t * t];
+    const weights = piece.length === 2 ? [u * u, 2 * u * t, t * t] : [u ** 3, 3 * u * u * t, 3 * u * t * t, t ** 3];
+    return [0, 1].map((axis) => [start, ...piece].reduce((sum, place, k) => sum + weights[k] * place[axis], 0));
   });
 }
 
@@ -231,9 +232,11 @@ function gap([ax, ay], [bx, by], x, y) {
 }
 
 // Left, top, right, bottom of a mark.
-export function bounds([points, radius]) {
-  const xs = points.filter((_, k) => k % 2 === 0), ys = points.filter((_, k) => k % 2 === 1);
-  return [Math.min(...xs) - radius, Math.min(...ys) - radius, Math.max(...xs) + radius, Math.max(...ys) + radius];
+export function bounds(mark) {
+  const places = walks(mark).flatMap(({ start, pieces }) => [start, ...pieces.flat()]);
+  const [xs, ys] = [0, 1].map((axis) => places.map((place) => place[axis]));
+  const extreme = (along, of) => along.reduce((a, b) => of(a, b)), radius = mark[1];
+  return [...[xs, ys].map((along) => extreme(along, Math.min) - radius), ...[xs, ys].map((along) => extreme(along, Math.max) + radius)];
 }
 
 // Compares drawings with the target at the picture's size, or less for a large one.
