@@ -9,9 +9,11 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
 use strokefit::loss::Loss;
-use strokefit::math;
+use strokefit::math::{self, Point};
 use strokefit::render::{Backdrop, Canvas, Gradients, Renderer, Softness, Strokes};
-use strokefit::scene::{Area, Cap, Mark, Path, PathPoint, PointKind, Quantized, Scene, Stroke};
+use strokefit::scene::{
+    Arc, Area, Cap, Mark, Path, PathPoint, PointKind, Quantized, Scene, Stroke,
+};
 use strokefit::verify::{self, Size};
 use strokefit::{image::Image, svg};
 
@@ -46,13 +48,20 @@ impl Source<'_> {
         let [ax, ay, bx, by, radius, red, green, blue, opacity] = [(); 9].map(|()| self.float());
         let (a, b) = (math::point([ax, ay]), math::point([bx, by]));
         let color = [red, green, blue];
-        let path = match self.byte() % 8 {
+        let path = match self.byte() % 12 {
             0 | 1 => Path::dot(a),
             2 => self.path([PathPoint::on(a), PathPoint::on(b)], false),
             3 => self.path([PathPoint::on(a), PathPoint::off(b)], true),
             4 => {
-                let rings = self.rings([PathPoint::on(a), PathPoint::off(b)]);
-                return Area::plain(rings, color, opacity).into();
+                let ring =
+                    |source: &mut Self| source.path([PathPoint::on(a), PathPoint::off(b)], true);
+                return Area::plain(self.rings(ring), color, opacity).into();
+            }
+            8 => self.mixed_path([a, b], false),
+            9 => self.mixed_path([a, b], true),
+            10 => {
+                let ring = |source: &mut Self| source.mixed_path([a, b], true);
+                return Area::plain(self.rings(ring), color, opacity).into();
             }
             _ => Path::line(a, b),
         };
@@ -69,21 +78,61 @@ impl Source<'_> {
         })
     }
 
-    /// One ring to three, which begin and end with these points.
-    fn rings(&mut self, ends: [PathPoint; 2]) -> Vec<Path> {
+    /// One ring to three.
+    fn rings(&mut self, ring: impl Fn(&mut Self) -> Path) -> Vec<Path> {
         let count = 1 + self.byte() % 3;
-        (0..count).map(|_| self.path(ends, true)).collect()
+        (0..count).map(|_| ring(self)).collect()
+    }
+
+    fn point(&mut self) -> Point {
+        math::point([self.float(), self.float()])
     }
 
     /// A path with up to seven more points between these two, on or off it.
     fn path(&mut self, [start, end]: [PathPoint; 2], closed: bool) -> Path {
         let kinds = self.byte();
         let between = (0..kinds % 8).map(|i| PathPoint {
-            at: math::point([self.float(), self.float()]),
+            at: self.point(),
             kind: PointKind::on_if(kinds >> (i + 1) & 1 == 1),
         });
         let points = [start].into_iter().chain(between).chain([end]).collect();
         Path::new(points, closed).expect("an open path has its ends on it")
+    }
+
+    /// A path of up to four pieces of all kinds, which starts and ends at these places; a closed one comes back from there by one
+    /// more.
+    fn mixed_path(&mut self, [start, end]: [Point; 2], closed: bool) -> Path {
+        let mut ends = vec![start];
+        ends.extend((0..self.byte() % 4).map(|_| self.point()));
+        ends.push(end);
+        let next = ends.iter().cycle().skip(1);
+        let pairs = ends.iter().zip(next).map(|(a, b)| [*a, *b]);
+        let points = pairs.flat_map(|ends| {
+            let between = self.between(ends);
+            [PathPoint::on(ends[0])].into_iter().chain(between)
+        });
+        let mut points: Vec<PathPoint> = points.collect();
+        if !closed {
+            let last = points.iter().rposition(PathPoint::is_on);
+            points.truncate(last.map_or(0, |last| last + 1));
+        }
+        Path::new(points, closed).expect("a piece between two points on a path")
+    }
+
+    /// The points of a line, a curve or an arc between its ends.
+    fn between(&mut self, ends: [Point; 2]) -> Vec<PathPoint> {
+        match self.byte() % 6 {
+            0 => vec![],
+            1 => vec![PathPoint::off(self.point())],
+            2 => vec![PathPoint::off(self.point()), PathPoint::off(self.point())],
+            3 => vec![
+                PathPoint::cubic(self.point()),
+                PathPoint::cubic(self.point()),
+            ],
+            4 => vec![PathPoint::arc(self.point())],
+            // Half circles are what rounding has to take care of.
+            _ => vec![PathPoint::arc(Arc::of_bulge(ends, 1.0).through)],
+        }
     }
 
     fn scene(&mut self) -> Scene {

@@ -2,9 +2,10 @@
 //! out is what its removal does. On random scenes, and on the degenerate ones that a fit runs into.
 
 use crate::support::areas::{Rings, areas, paints};
-use crate::support::paths::paths;
+use crate::support::paths::{mixed, paths};
 use strokefit::coverage::Coverage;
 use strokefit::loss::Loss;
+use strokefit::math::Point;
 use strokefit::render::reference::{Reference, Rgb, Scene, Stroke};
 use strokefit::render::{PARAMS, STYLE};
 use strokefit::scene::PointKind;
@@ -77,7 +78,17 @@ fn of_paths() -> Vec<(String, Scene)> {
     };
     // Wider than the picture by a bit: a pixel centre on the axis of a symmetric curve is as near to two segments, and has a
     // kink there.
-    paths(9.1, 7.0).into_iter().map(case).collect()
+    let paths = paths(9.1, 7.0).into_iter();
+    paths.chain((0..8).map(random_path)).map(case).collect()
+}
+
+/// A path of one to four pieces of all kinds, open or closed.
+fn random_path(seed: u64) -> (&'static str, scene::Path) {
+    let value = |i: u64, k: u64| draw(seed, 20 + i, k);
+    let place = |k: u64| Point::new(9.1 * value(0, k), 7.0 * value(1, k));
+    let closed = seed.is_multiple_of(2);
+    let path = mixed(1 + seed / 2, closed, |k| value(2, k) as f32, place);
+    ("pieces of all kinds", path)
 }
 
 /// An area of every kind, and one with a gradient of every kind, with ordinary strokes around.

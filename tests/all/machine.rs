@@ -4,11 +4,13 @@ use std::ffi::OsStr;
 use std::fs;
 use std::process::Command;
 
+use crate::support::paths::of_letter;
 use crate::support::{Place, Words, agreement, assert_refused, assert_says, committed, skip};
-use kurbo::Shape;
+use kurbo::{Line, ParamCurveNearest, Shape};
 use strokefit::image::Image;
-use strokefit::scene::{Mark, Path, Scene};
-use strokefit::svg;
+use strokefit::machine::{self, Sheet};
+use strokefit::scene::{Area, Cap, Mark, Path, PathPoint, Scene, Stage, Stroke};
+use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
 
 /// A folder with a picture of a filled drawing, 256 px wide.
@@ -140,9 +142,9 @@ fn every_stroke_has_one_outline_that_looks_like_it() {
     place.done("fit @samples/bicycle.png -o a.svg -q --preset draft --strokes 60 --marks strokes");
     let strokes = place.text("a.svg");
     let scene = svg::read(&strokes).unwrap();
-    let options = svg::WriteOptions {
+    let options = WriteOptions {
         form: svg::Form::Outlines,
-        ..svg::WriteOptions::default()
+        ..WriteOptions::default()
     };
     let outlines = svg::write(&scene, &options);
     assert!(!outlines.contains("stroke="));
@@ -311,6 +313,233 @@ fn a_dxf_has_lines_and_arcs_in_millimetres_on_layers_by_colour() {
     // Millimetres, no errors, and a layer for each colour beside the one that every file has.
     assert_eq!((numbers[5], numbers[6]), (4.0, 0.0), "{said}");
     assert!(numbers[7] as usize > scene.len(), "{said}");
+}
+
+/// The vertices of the polylines of a DXF, mm, with their bulges.
+fn polylines(text: &str) -> Vec<Vec<([f64; 2], f64)>> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut polylines: Vec<Vec<([f64; 2], f64)>> = Vec::new();
+    let mut is_polyline = false;
+    for pair in lines.chunks(2) {
+        let (code, value) = (pair[0].trim(), pair[1]);
+        let number = || value.parse::<f64>().unwrap();
+        if code == "0" {
+            is_polyline = value == "LWPOLYLINE";
+            polylines.extend(is_polyline.then(Vec::new));
+        }
+        match (code, polylines.last_mut().filter(|_| is_polyline)) {
+            ("10", Some(last)) => last.push(([number(), 0.0], 0.0)),
+            ("20", Some(last)) => last.last_mut().unwrap().0[1] = number(),
+            ("42", Some(last)) => last.last_mut().unwrap().1 = number(),
+            _ => {}
+        }
+    }
+    polylines
+}
+
+/// The place at a share of the way from `a` to `b` along an arc, as the reference of DXF defines it (LWPOLYLINE, group 42): the
+/// bulge is the tangent of a fourth of the angle that the arc includes, negative if the arc goes clockwise from the start to
+/// the end; the y axis goes up.
+fn along_bulge(a: [f64; 2], b: [f64; 2], bulge: f64, share: f64) -> [f64; 2] {
+    let angle = 4.0 * bulge.atan();
+    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+    // Seen from the start, the centre is a quarter turn less half the angle to the left of the end.
+    let radius = dx.hypot(dy) / (2.0 * (0.5 * angle).sin());
+    let to_center = dy.atan2(dx) + std::f64::consts::FRAC_PI_2 - 0.5 * angle;
+    let center = [
+        a[0] + radius * to_center.cos(),
+        a[1] + radius * to_center.sin(),
+    ];
+    // Counter-clockwise is the direction in which angles grow.
+    let [x, y] = [a[0] - center[0], a[1] - center[1]];
+    let (sin, cos) = (share * angle).sin_cos();
+    [center[0] + x * cos - y * sin, center[1] + x * sin + y * cos]
+}
+
+#[test]
+fn arcs_of_a_dxf_go_where_the_paths_go() {
+    let (center, radius) = ([48.0, 36.0], 24.0);
+    // Angles that grow turn clockwise on the page, whose y axis goes down.
+    let at = |angle: f64| {
+        [
+            center[0] + radius * angle.cos(),
+            center[1] + radius * angle.sin(),
+        ]
+    };
+    for (start, sweep) in [
+        (0.3, 1.0),
+        (0.3, -1.0),
+        (2.0, 3.0),
+        (2.0, -3.0),
+        (4.0, 5.0),
+        (4.0, -5.0),
+        (1.0, 6.0),
+    ] {
+        let point = |share: f64| {
+            strokefit::math::Point::from(<(f64, f64)>::from(at(start + share * sweep)))
+        };
+        let arc = vec![
+            PathPoint::on(point(0.0)),
+            PathPoint::arc(point(0.4)),
+            PathPoint::on(point(1.0)),
+        ];
+        let stroke = |path| Stroke {
+            path,
+            radius: 1.0,
+            cap: Cap::Round,
+            color: [0.0; 3],
+            opacity: 1.0,
+        };
+        // Open, and closed by a line.
+        let paths = [false, true].map(|closed| Path::new(arc.clone(), closed).unwrap());
+        let scene = Scene {
+            stages: vec![Stage::from_iter(paths.map(stroke))],
+            ..Scene::empty(96, 72, None)
+        };
+        let sheet = Sheet {
+            scene: &scene,
+            width: None,
+        };
+        let polylines = polylines(&machine::dxf(&sheet));
+        assert_eq!(polylines.len(), 2);
+        for vertices in polylines {
+            let [(a, bulge), (b, after)] = vertices[..] else {
+                panic!("{vertices:?}")
+            };
+            assert_eq!(after, 0.0);
+            for share in [0.0, 0.1, 0.25, 0.5, 0.8, 1.0] {
+                let [x, y] = at(start + share * sweep);
+                let expected = [x, 72.0 - y].map(|px| px * 25.4 / 96.0);
+                let got = along_bulge(a, b, bulge, share);
+                let away = (got[0] - expected[0]).hypot(got[1] - expected[1]);
+                assert!(
+                    away < 1e-3,
+                    "{start} {sweep} {share}: {got:?}, not {expected:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn arcs_of_a_dxf_are_within_a_hundredth_of_a_millimetre_of_cubic_curves() {
+    let at = |x: f64, y: f64| strokefit::math::Point::new(x, y);
+    let points = vec![
+        PathPoint::on(at(5.0, 60.0)),
+        PathPoint::cubic(at(10.0, -40.0)),
+        PathPoint::cubic(at(90.0, 110.0)),
+        PathPoint::on(at(90.0, 10.0)),
+        PathPoint::cubic(at(95.0, 0.0)),
+        PathPoint::cubic(at(20.0, 5.0)),
+        PathPoint::on(at(60.0, 65.0)),
+    ];
+    let path = Path::new(points, false).unwrap();
+    let stroke = Stroke {
+        path: path.clone(),
+        radius: 1.0,
+        cap: Cap::Round,
+        color: [0.0; 3],
+        opacity: 1.0,
+    };
+    let scene = Scene {
+        stages: vec![Stage::from_iter([stroke])],
+        ..Scene::empty(96, 72, None)
+    };
+    let sheet = Sheet {
+        scene: &scene,
+        width: Some("300mm".parse().unwrap()),
+    };
+    let mm = 300.0 / 96.0;
+    let lines: Vec<Line> = path
+        .flattened(1e-4)
+        .windows(2)
+        .map(|ends| Line::new(ends[0], ends[1]))
+        .collect();
+    let [vertices] = &polylines(&machine::dxf(&sheet))[..] else {
+        panic!("one polyline")
+    };
+    for ends in vertices.windows(2) {
+        for share in [0.0, 0.3, 0.5, 0.9] {
+            let [x, y] = along_bulge(ends[0].0, ends[1].0, ends[0].1, share);
+            let place = at(x / mm, 72.0 - y / mm);
+            let gaps = lines
+                .iter()
+                .map(|line| line.nearest(place, 0.0).distance_sq.sqrt() * mm);
+            let gap = gaps.fold(f64::INFINITY, f64::min);
+            assert!(gap < 0.0105, "{gap} mm");
+        }
+    }
+}
+
+/// Opaque marks of cubic curves and arcs: an area with a hole, a line, and one with square ends.
+fn of_curves_and_arcs() -> Scene {
+    let path = |points: &[(f64, f64, char)], closed: bool| {
+        let point = |&(x, y, kind): &(f64, f64, char)| PathPoint {
+            at: (x, y).into(),
+            kind: of_letter(kind),
+        };
+        Path::new(points.iter().map(point).collect(), closed).unwrap()
+    };
+    let ring = [
+        (20.0, 60.0, 'o'),
+        (60.0, 10.0, 'a'),
+        (100.0, 60.0, 'o'),
+        (150.0, 60.0, 'c'),
+        (90.0, 140.0, 'c'),
+        (60.0, 130.0, 'o'),
+    ];
+    let hole = [(50.0, 70.0, 'o'), (60.0, 50.0, 'a'), (80.0, 80.0, 'o')];
+    let line = [
+        (110.0, 20.0, 'o'),
+        (170.0, 0.0, 'c'),
+        (170.0, 70.0, 'c'),
+        (130.0, 70.0, 'o'),
+    ];
+    let arc = [(120.0, 130.0, 'o'), (150.0, 95.0, 'a'), (185.0, 110.0, 'o')];
+    let stroke = |points: &[_], cap| Stroke {
+        path: path(points, false),
+        radius: 5.0,
+        cap,
+        color: [0.1, 0.4, 0.8],
+        opacity: 1.0,
+    };
+    let area = Area::plain(
+        vec![path(&ring, true), path(&hole, true)],
+        [0.8, 0.3, 0.1],
+        1.0,
+    );
+    let marks = [
+        Mark::from(area),
+        stroke(&line, Cap::Round).into(),
+        stroke(&arc, Cap::Butt).into(),
+    ];
+    Scene {
+        stages: vec![Stage::from_iter(marks)],
+        ..Scene::empty(200, 150, Some([1.0; 3]))
+    }
+}
+
+#[test]
+fn every_file_has_cubic_curves_and_arcs() {
+    let place = Place::new();
+    let text = svg::write(&of_curves_and_arcs(), &WriteOptions::default());
+    assert_says(
+        &text,
+        &["0c50 0-10 80-40 70z", "a35.63 35.63 0 0 1", "\"butt\""],
+    );
+    place.file("a.svg", &text);
+    for (option, least_db) in [
+        ("--cutout", 32.0),
+        ("--outline", 45.0),
+        ("--hatch 2px", 20.0),
+    ] {
+        place.done(&format!("render a.svg -o b.svg {option}"));
+        let seen = agreement(&image(&place.text("b.svg"), 2.0), &image(&text, 2.0));
+        assert!(seen > least_db, "{option}: {seen}");
+    }
+    place.done("render a.svg -o a.pdf -o a.dxf");
+    assert!(as_pdf(&place).is_none_or(|seen| seen > 34.0));
+    assert_eq!(place.text("a.dxf").matches("\nLWPOLYLINE\n").count(), 4);
 }
 
 #[test]

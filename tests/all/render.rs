@@ -5,7 +5,7 @@ use kurbo::{Line, ParamCurveNearest};
 use proptest::prelude::*;
 
 use crate::support::areas::{Rings, areas, paints};
-use crate::support::paths::paths;
+use crate::support::paths::{mixed, paths};
 use crate::support::rendered;
 use strokefit::coverage::Coverage;
 use strokefit::fit::{Objective, Simd};
@@ -211,7 +211,7 @@ fn of_areas() -> Vec<Case> {
     plain.chain(painted.enumerate().map(case)).collect()
 }
 
-/// Areas of one to three random rings among random strokes.
+/// Areas of one to three random rings among random strokes; a third of the rings have all kinds of pieces.
 fn random_areas(seed: u64, width: usize, height: usize, count: usize) -> Case {
     let others = random_paths(seed, width, height, count);
     let u = |i: usize, k: u64| draw(seed, 12, i as u64, k);
@@ -224,13 +224,28 @@ fn random_areas(seed: u64, width: usize, height: usize, count: usize) -> Case {
             kinds: Vec::new(),
             ends: Vec::new(),
         };
+        let [x, y] = other.points[0];
+        let place = |k: u64| {
+            let at = [0, 1].map(|axis| 50.0 * (u(i, 10 + 3 * k + axis) - 0.5));
+            math::point([x + at[0], y + at[1]])
+        };
+        let kind = |k: u64| u(i, 12 + 3 * k);
         for ring in 0..1 + (3.0 * u(i, 0)) as u64 {
-            for k in 100 * ring..100 * ring + 3 + (5.0 * u(i, 1 + ring)) as u64 {
-                let [x, y] = other.points[0];
-                let at = [0, 1].map(|axis| 50.0 * (u(i, 10 + 3 * k + axis) - 0.5));
-                rings.points.push([x + at[0], y + at[1]]);
-                rings.kinds.push(PointKind::on_if(u(i, 12 + 3 * k) >= 0.4));
-            }
+            let (first, count) = (100 * ring, 3 + (5.0 * u(i, 1 + ring)) as u64);
+            let path = match u(i, 5 + ring) < 0.33 {
+                true => mixed(count, true, |k| kind(first + k), |k| place(first + k)),
+                false => {
+                    let point = |k| PathPoint {
+                        at: place(k),
+                        kind: PointKind::on_if(kind(k) >= 0.4),
+                    };
+                    Path::new((first..first + count).map(point).collect(), true).unwrap()
+                }
+            };
+            rings
+                .points
+                .extend(path.points().iter().map(|p| math::xy(p.at)));
+            rings.kinds.extend(path.points().iter().map(|p| p.kind));
             rings.ends.push(rings.points.len() as u32);
         }
         push_area(&mut strokes, &rings, other.color(), other.opacity(), None);
@@ -293,7 +308,7 @@ fn along_borders() -> Case {
     Case::new("along the borders of tiles", [70, 66], strokes)
 }
 
-/// Random strokes of one to nine points, open and closed, straight and curved.
+/// Random strokes of one to nine points, open and closed, straight and curved; a third of them have all kinds of pieces.
 fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Case {
     let capsules = random(seed, width, height, count);
     let u = |i: usize, k: u64| draw(seed, 11, i as u64, k);
@@ -302,16 +317,25 @@ fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Case {
         let closed = u(i, 1) < 0.3;
         let [x, y] = capsule.points[0];
         let spread = 4.0 + 30.0 * u(i, 2);
+        let place = |k: u64| {
+            let at = [0, 1].map(|axis| spread * (u(i, 3 + 3 * k + axis) - 0.5));
+            math::point([x + at[0], y + at[1]])
+        };
+        let kind = |k: u64| u(i, 5 + 3 * k);
         let point = |k: usize| {
-            let at = [0, 1].map(|axis| spread * (u(i, 3 + 3 * k as u64 + axis) - 0.5));
             let is_end = !closed && (k == 0 || k == points - 1) || points == 1;
             PathPoint {
-                at: math::point([x + at[0], y + at[1]]),
-                kind: PointKind::on_if(is_end || u(i, 5 + 3 * k as u64) < 0.5),
+                at: place(k as u64),
+                kind: PointKind::on_if(is_end || kind(k as u64) < 0.5),
             }
         };
+        let is_mixed = u(i, 1000) < 0.33;
+        let path = match is_mixed {
+            true => mixed(points.div_ceil(2) as u64, closed, kind, place),
+            false => Path::new((0..points).map(point).collect(), closed).unwrap(),
+        };
         Stroke {
-            path: Path::new((0..points).map(point).collect(), closed).unwrap(),
+            path,
             radius: capsule.radius().into(),
             cap: Cap::Round,
             color: capsule.color(),
@@ -670,6 +694,25 @@ proptest! {
             PathPoint { at: math::point([60.0 + x * u, 60.0 + y * v]), kind: PointKind::on_if(is_on) }
         });
         let path = Path::new(points.collect(), true).unwrap();
+        let stroke = Stroke { path, radius: radius.into(), cap: Cap::Round, color: [0.0; 3], opacity: 1.0 };
+        let scene = Scene {
+            stages: vec![Stage::from_iter([stroke])],
+            ..Scene::empty(120, 120, Some([1.0; 3]))
+        };
+        let text = svg::write(&scene, &WriteOptions::default());
+        prop_assert!(deepest_hole(&text) < 1.5, "{text}");
+    }
+
+    #[test]
+    fn no_written_stroke_of_all_kinds_of_pieces_has_a_hole(
+        seed in 0_u64..1 << 40,
+        pieces in 2..6_u64,
+        closed in any::<bool>(),
+        radius in 2.0..42.0_f32,
+    ) {
+        let u = |axis: u64, k: u64| draw(seed, 13, axis, k);
+        let place = |k: u64| math::point([0, 1].map(|axis| 15.0 + 90.0 * u(axis, k)));
+        let path = mixed(pieces, closed, |k| u(2, k), place);
         let stroke = Stroke { path, radius: radius.into(), cap: Cap::Round, color: [0.0; 3], opacity: 1.0 };
         let scene = Scene {
             stages: vec![Stage::from_iter([stroke])],

@@ -1,6 +1,6 @@
 //! Paths of every kind, each with one kind of trouble.
 
-use strokefit::math;
+use strokefit::math::{self, Point};
 use strokefit::scene::{Path, PathPoint, PointKind};
 
 /// The kind of a point: `o` on its path, `~` the control point of a quadratic curve, `c` one of a cubic curve, and `a` of an arc.
@@ -12,6 +12,28 @@ pub(crate) fn of_letter(letter: char) -> PointKind {
         'a' => PointKind::Arc,
         _ => panic!("{letter} is no kind of point"),
     }
+}
+
+/// A path of so many pieces of all kinds: each is of the kind that `kind` gives for it, 0..1, and `place` gives the points.
+pub(crate) fn mixed(
+    pieces: u64,
+    closed: bool,
+    kind: impl Fn(u64) -> f32,
+    place: impl Fn(u64) -> Point,
+) -> Path {
+    let points = (0..pieces).flat_map(|i| {
+        let [start, p, q] = [0, 1, 2].map(|k| place(3 * i + k));
+        let between = match (5.0 * kind(i)) as u8 {
+            0 => vec![],
+            1 => vec![PathPoint::off(p)],
+            2 => [p, q].map(PathPoint::off).to_vec(),
+            3 => [p, q].map(PathPoint::cubic).to_vec(),
+            _ => vec![PathPoint::arc(p)],
+        };
+        [vec![PathPoint::on(start)], between].concat()
+    });
+    let end = (!closed).then(|| PathPoint::on(place(3 * pieces)));
+    Path::new(points.chain(end).collect(), closed).unwrap()
 }
 
 /// The paths with their names; they lie in and around a picture of `width`×`height` px.
