@@ -22,7 +22,7 @@ render = pytest.importorskip("strokefit.torch").render
 def tensors(marks: strokefit.Marks, **others: object) -> tuple[list[Any], dict[str, Any]]:
     """The numbers of marks, which ask for gradients, and what else `render` takes."""
     numbers = [marks.points, marks.widths, marks.colors, marks.opacities]
-    kinds = {name: getattr(marks, name) for name in ("starts", "on_path", "closed", "filled", "rings")}
+    kinds = {name: getattr(marks, name) for name in ("starts", "on_path", "closed", "filled", "rings", "kinds")}
     named = {name: None if array is None else torch.from_numpy(array) for name, array in kinds.items()}
     return [torch.tensor(array, requires_grad=True) for array in numbers], {**named, **others}
 
@@ -70,6 +70,15 @@ def test_gradcheck_against_the_reference(background: object) -> None:
 def test_gradcheck_of_areas_and_offsets() -> None:
     numbers, named = tensors(double(areas(1, 4, 20, 16)))
     assert torch.autograd.gradcheck(lambda *numbers: render(*numbers, **named, **SIZE), numbers, eps=1e-6, atol=1e-5)
+
+
+def test_gradcheck_of_cubic_curves_and_arcs() -> None:
+    random = torch.Generator().manual_seed(4)
+    draw = lambda *shape: torch.rand(*shape, generator=random, dtype=torch.float64)
+    made = [20 * draw(2, 6, 2), 1 + 4 * draw(2), draw(2, 3), 0.1 + 0.8 * draw(2)]
+    numbers = [tensor.requires_grad_() for tensor in made]
+    kinds = torch.tensor([[0, 2, 2, 0, 3, 0], [0, 3, 0, 1, 1, 0]], dtype=torch.uint8)
+    assert torch.autograd.gradcheck(lambda *numbers: render(*numbers, kinds=kinds, **SIZE), numbers, eps=1e-6, atol=1e-5)
 
 
 @pytest.mark.parametrize("asked", range(1, 32))

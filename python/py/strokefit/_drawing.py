@@ -43,10 +43,10 @@ class Drawing:
 
     @property
     def scene(self) -> Scene:
-        """The file as a scene, whose arrays can be changed: `Scene.read(drawing)`.
+        """The file as a scene, whose arrays can be changed: `Scene.read(drawing)`. Of the form `outlines` all are areas.
 
         Raises:
-            ValueError: The drawing is laid on an SVG by another program, or has the form `outlines`.
+            ValueError: The drawing is laid on an SVG by another program.
         """
         from ._scene import Scene
 
