@@ -1,7 +1,6 @@
 //! Scenes of any numbers: quantised, written, read back, drawn by our renderer and, now and then, by resvg.
 //!
-//! A run takes about half a millisecond in the profile `quick`. It took four times that when it was handed to worker threads, each of which had to
-//! be woken for a tile or two.
+//! Most runs stay on their own thread: a scene has a tile or two, for which workers would have to be woken.
 
 use std::cell::RefCell;
 

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use crate::support::paths::of_letter;
+use crate::support::paths::of_letters;
 use crate::support::{
     Place, STROKEFIT, Words, committed, drawn, entry, installed, of_strokes, on_white, record,
     sample, stderr, within,
@@ -161,11 +161,7 @@ fn bent(points: &[(f32, f32, bool)], closed: bool, width: f32, opacity: f32) -> 
 
 /// Closed paths of all kinds of pieces, as a stroke and as an area.
 fn mixed(points: &[(f32, f32, char)]) -> [Mark; 2] {
-    let point = |&(x, y, kind): &(f32, f32, char)| PathPoint {
-        at: math::point([x, y]),
-        kind: of_letter(kind),
-    };
-    let path = scene::Path::new(points.iter().map(point).collect(), true).unwrap();
+    let path = of_letters(points, true);
     let stroke = Stroke {
         path: path.clone(),
         opacity: 0.6,

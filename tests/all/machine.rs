@@ -4,11 +4,12 @@ use std::ffi::OsStr;
 use std::fs;
 use std::process::Command;
 
-use crate::support::paths::of_letter;
+use crate::support::paths::of_letters;
 use crate::support::{Place, Words, agreement, assert_refused, assert_says, committed, skip};
 use kurbo::{Line, ParamCurveNearest, Shape};
 use strokefit::image::Image;
 use strokefit::machine::{self, Sheet};
+use strokefit::math::Point;
 use strokefit::scene::{Area, Cap, Mark, Path, PathPoint, Scene, Stage, Stroke};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
@@ -97,7 +98,7 @@ fn overlap_of_pairs(scene: &Scene) -> f64 {
                 .collect()
         })
         .collect();
-    let spans = |area: &Vec<Vec<strokefit::math::Point>>, y: f64| {
+    let spans = |area: &Vec<Vec<Point>>, y: f64| {
         let mut cuts: Vec<f64> = Vec::new();
         for ring in area {
             for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
@@ -376,7 +377,8 @@ fn arcs_of_a_dxf_go_where_the_paths_go() {
         (1.0, 6.0),
     ] {
         let point = |share: f64| {
-            strokefit::math::Point::from(<(f64, f64)>::from(at(start + share * sweep)))
+            let [x, y] = at(start + share * sweep);
+            Point::new(x, y)
         };
         let arc = vec![
             PathPoint::on(point(0.0)),
@@ -423,7 +425,7 @@ fn arcs_of_a_dxf_go_where_the_paths_go() {
 
 #[test]
 fn arcs_of_a_dxf_are_within_a_hundredth_of_a_millimetre_of_cubic_curves() {
-    let at = |x: f64, y: f64| strokefit::math::Point::new(x, y);
+    let at = Point::new;
     let points = vec![
         PathPoint::on(at(5.0, 60.0)),
         PathPoint::cubic(at(10.0, -40.0)),
@@ -473,13 +475,6 @@ fn arcs_of_a_dxf_are_within_a_hundredth_of_a_millimetre_of_cubic_curves() {
 
 /// Opaque marks of cubic curves and arcs: an area with a hole, a line, and one with square ends.
 fn of_curves_and_arcs() -> Scene {
-    let path = |points: &[(f64, f64, char)], closed: bool| {
-        let point = |&(x, y, kind): &(f64, f64, char)| PathPoint {
-            at: (x, y).into(),
-            kind: of_letter(kind),
-        };
-        Path::new(points.iter().map(point).collect(), closed).unwrap()
-    };
     let ring = [
         (20.0, 60.0, 'o'),
         (60.0, 10.0, 'a'),
@@ -497,14 +492,14 @@ fn of_curves_and_arcs() -> Scene {
     ];
     let arc = [(120.0, 130.0, 'o'), (150.0, 95.0, 'a'), (185.0, 110.0, 'o')];
     let stroke = |points: &[_], cap| Stroke {
-        path: path(points, false),
+        path: of_letters(points, false),
         radius: 5.0,
         cap,
         color: [0.1, 0.4, 0.8],
         opacity: 1.0,
     };
     let area = Area::plain(
-        vec![path(&ring, true), path(&hole, true)],
+        vec![of_letters(&ring, true), of_letters(&hole, true)],
         [0.8, 0.3, 0.1],
         1.0,
     );

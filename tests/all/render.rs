@@ -694,12 +694,7 @@ proptest! {
             PathPoint { at: math::point([60.0 + x * u, 60.0 + y * v]), kind: PointKind::on_if(is_on) }
         });
         let path = Path::new(points.collect(), true).unwrap();
-        let stroke = Stroke { path, radius: radius.into(), cap: Cap::Round, color: [0.0; 3], opacity: 1.0 };
-        let scene = Scene {
-            stages: vec![Stage::from_iter([stroke])],
-            ..Scene::empty(120, 120, Some([1.0; 3]))
-        };
-        let text = svg::write(&scene, &WriteOptions::default());
+        let text = stroke_text(path, radius);
         prop_assert!(deepest_hole(&text) < 1.5, "{text}");
     }
 
@@ -713,14 +708,25 @@ proptest! {
         let u = |axis: u64, k: u64| draw(seed, 13, axis, k);
         let place = |k: u64| math::point([0, 1].map(|axis| 15.0 + 90.0 * u(axis, k)));
         let path = mixed(pieces, closed, |k| u(2, k), place);
-        let stroke = Stroke { path, radius: radius.into(), cap: Cap::Round, color: [0.0; 3], opacity: 1.0 };
-        let scene = Scene {
-            stages: vec![Stage::from_iter([stroke])],
-            ..Scene::empty(120, 120, Some([1.0; 3]))
-        };
-        let text = svg::write(&scene, &WriteOptions::default());
+        let text = stroke_text(path, radius);
         prop_assert!(deepest_hole(&text) < 1.5, "{text}");
     }
+}
+
+/// The file of one black stroke on a white page of 120 px.
+fn stroke_text(path: Path, radius: f32) -> String {
+    let stroke = Stroke {
+        path,
+        radius: radius.into(),
+        cap: Cap::Round,
+        color: [0.0; 3],
+        opacity: 1.0,
+    };
+    let scene = Scene {
+        stages: vec![Stage::from_iter([stroke])],
+        ..Scene::empty(120, 120, Some([1.0; 3]))
+    };
+    svg::write(&scene, &WriteOptions::default())
 }
 
 /// The farthest, px, that a pixel within the one stroke of a file is from its edge, of pixels that resvg leaves light.

@@ -14,6 +14,15 @@ pub(crate) fn of_letter(letter: char) -> PointKind {
     }
 }
 
+/// A path of points, px, with the letters of their kinds.
+pub(crate) fn of_letters(points: &[(f32, f32, char)], closed: bool) -> Path {
+    let point = |&(x, y, kind): &(f32, f32, char)| PathPoint {
+        at: math::point([x, y]),
+        kind: of_letter(kind),
+    };
+    Path::new(points.iter().map(point).collect(), closed).unwrap()
+}
+
 /// A path of so many pieces of all kinds: each is of the kind that `kind` gives for it, 0..1, and `place` gives the points.
 pub(crate) fn mixed(
     pieces: u64,
@@ -39,11 +48,10 @@ pub(crate) fn mixed(
 /// The paths with their names; they lie in and around a picture of `width`×`height` px.
 pub(crate) fn paths(width: f32, height: f32) -> Vec<(&'static str, Path)> {
     let path = |points: &[(f32, f32, char)], closed: bool| {
-        let point = |&(x, y, kind): &(f32, f32, char)| PathPoint {
-            at: math::point([x * width, y * height]),
-            kind: of_letter(kind),
-        };
-        Path::new(points.iter().map(point).collect(), closed).unwrap()
+        let scaled = points
+            .iter()
+            .map(|&(x, y, kind)| (x * width, y * height, kind));
+        of_letters(&scaled.collect::<Vec<_>>(), closed)
     };
     let (open, closed) = (false, true);
     let a = (0.131, 0.217, 'o');
