@@ -97,6 +97,27 @@ impl Path {
         Self::canonical(points, self.is_closed()).with_corners_for_cusps(grid)
     }
 
+    /// The rounded path with quadratic curves in the place of cubic ones that bend more tightly than a pen of this `radius`, px: inside
+    /// such bends the outlines of resvg's cubic strokes leave parts out.
+    pub(super) fn with_quads_for_bends(self, radius: f64, grid: &Grid) -> Self {
+        let is_tight = |piece: &PathPiece| matches!(piece, PathPiece::Cubic(curve) if bends_within(curve, radius, HALVINGS));
+        if !self.pieces().any(|piece| is_tight(&piece)) {
+            return self;
+        }
+        let tolerance = grid.step().max(NEAREST);
+        let mut points = self.rewritten(|piece| match is_tight(piece) {
+            true => piece.between_quads(tolerance),
+            false => piece.between().collect(),
+        });
+        // The last piece of a closed path ends at the first point.
+        if self.is_closed() {
+            points.pop();
+        }
+        // Arcs that were rounded stay as they are, or become cubic curves; each round leaves fewer of both.
+        let path = Self::of_points(points, self.is_closed()).rounded(grid);
+        path.with_quads_for_bends(radius, grid)
+    }
+
     /// The path with lines in the place of the pieces for which `is_line` says so; `None` if there is none.
     fn without_between(&self, is_line: impl Fn(&PathPiece) -> bool) -> Option<Self> {
         // All on-points are written out first: without its control point, a curve would take its implied ends along.
@@ -296,6 +317,38 @@ fn cusp(curve: &QuadBez) -> Option<Point> {
     // `area` is chord · height of the control point, and a curve is half that height from its chord.
     let is_beside_chord = area <= 2.0 * BESIDE * (curve.p2 - curve.p0).hypot();
     (is_sharp && (is_within || is_beside_chord)).then(|| curve.eval(t))
+}
+
+/// Smallest distance of quadratic curves from the cubic one that they replace, px.
+const NEAREST: f64 = 0.01;
+
+/// Most times that a cubic curve is halved to tell how tightly it bends.
+const HALVINGS: u32 = 6;
+
+/// True if a cubic curve may have a radius of curvature below `radius`, px.
+fn bends_within(curve: &CubicBez, radius: f64, halvings: u32) -> bool {
+    let CubicBez { p0, p1, p2, p3 } = *curve;
+    // The velocity is a quadratic Bézier curve of these, and its cross product with the acceleration one of those numbers; both lie
+    // within the hull of their controls.
+    let [a, b, c] = [p1 - p0, p2 - p1, p3 - p2].map(|leg| 3.0 * leg);
+    let turns = [2.0 * a.cross(b), a.cross(c), 2.0 * b.cross(c)];
+    let most = turns
+        .iter()
+        .fold(0.0, |most: f64, turn| most.max(turn.abs()));
+    let chord = p3 - p0;
+    let along = [a, b, c].map(|v| v.dot(chord)).into_iter();
+    let slowest = along.fold(f64::INFINITY, f64::min).max(0.0);
+    // The radius of curvature is |v|³ / |v × a|, and |v| is at least its part along the chord.
+    let length = chord.hypot();
+    if slowest * slowest * slowest >= radius * most * length * length * length {
+        return false;
+    }
+    halvings == 0 || {
+        let (first, second) = curve.subdivide();
+        [first, second]
+            .iter()
+            .any(|half| bends_within(half, radius, halvings - 1))
+    }
 }
 
 /// Steps in which a cubic curve is searched for bends; it has two at most.

@@ -190,13 +190,7 @@ impl Path {
         if !self.is_mixed() {
             return self.clone();
         }
-        let between = |piece: &PathPiece| {
-            let quads = piece.quads(tolerance).into_iter();
-            let points = quads.flat_map(|q| [PathPoint::on(q.p0), PathPoint::off(q.p1)]);
-            // The first of them starts where the piece does.
-            points.skip(1).collect()
-        };
-        let mut points = self.rewritten(between);
+        let mut points = self.rewritten(|piece| piece.between_quads(tolerance));
         // The last piece of a closed path ends at the first point.
         if self.closed {
             points.pop();

@@ -213,6 +213,14 @@ impl PathPiece {
         });
         quads.flatten().collect()
     }
+
+    /// The points between its ends when it becomes quadratic curves at most `tolerance` px away.
+    pub(super) fn between_quads(self, tolerance: f64) -> Vec<PathPoint> {
+        let quads = self.quads(tolerance).into_iter();
+        let points = quads.flat_map(|q| [PathPoint::on(q.p0), PathPoint::off(q.p1)]);
+        // The first of them starts where the piece does.
+        points.skip(1).collect()
+    }
 }
 
 /// Most quadratic curves in the place of a cubic one: with as many, any within a page of 4,000 px is nearer than 0.01 px.

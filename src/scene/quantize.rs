@@ -68,7 +68,8 @@ impl Scene {
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
     /// opacities become multiples of 1/255; a path shorter than the precision becomes a dot; a closed path that its pen
     /// fills becomes an open one that ends where it starts; rings without an inside go; a stroke with square ends that SVG
-    /// would draw otherwise becomes an area. Off-points are
+    /// would draw otherwise becomes an area; cubic curves of strokes that bend more tightly than
+    /// their pen become quadratic ones. Off-points are
     /// rounded so that the file also holds the on-points that they imply.
     /// [`Dropped`] counts what is left out. Stages without marks are left out as well.
     pub fn quantized(&self, precision: u8) -> Quantized {
@@ -160,6 +161,7 @@ fn round(stroke: &Stroke, grid: &Grid) -> Stroke {
     // SVG holds widths, so the width is rounded, and the radius is half of it. The least width is rounded up, onto the grid.
     let width = grid.round(2.0 * stroke.radius).max(grid.above(MIN_WIDTH));
     let rounded = stroke.path.rounded(grid);
+    let rounded = rounded.with_quads_for_bends(0.5 * width, grid);
     let shaped = shaped(&stroke.path, rounded.clone(), grid);
     // A loop that its pen fills is written open, so it is no shape any more.
     let path = match shaped.clone().opened_if_filled(width).is_closed() {

@@ -708,6 +708,9 @@ proptest! {
         let u = |axis: u64, k: u64| draw(seed, 13, axis, k);
         let place = |k: u64| math::point([0, 1].map(|axis| 15.0 + 90.0 * u(axis, k)));
         let path = mixed(pieces, closed, |k| u(2, k), place);
+        // Three points of an arc may be nearly in line and out of order; a render refuses what is farther away than 2²⁰ px.
+        let is_near = |p: &Point| p.x.abs().max(p.y.abs()) < 1e6;
+        prop_assume!(path.flattened(1.0).iter().all(is_near));
         let text = stroke_text(path, radius);
         prop_assert!(deepest_hole(&text) < 1.5, "{text}");
     }
