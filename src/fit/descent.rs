@@ -47,6 +47,9 @@ const RADIUS_FACTORS: [f32; 2] = [0.25, 4.0];
 /// Step sizes of the colours of areas, in units of the strokes'. A guess: traced colours are right within a level.
 const AREA_COLOR: f32 = 0.1;
 
+/// Factor on the steps of areas that were traced where they are seen. 0, 0.1, 0.3, 1: a map has 43.0, 43.6, 43.5, 42.3 dB.
+const PLACED: f32 = 0.1;
+
 /// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8, 42.8, 42.5, 40.8
 /// dB.
 pub(super) const TRACED_PACE: f32 = 0.25;
@@ -311,10 +314,12 @@ fn scales(rates: &Rates, drawing: &Drawing) -> Vec<f32> {
         ..
     } = *rates;
     let [least, most] = RADIUS_FACTORS;
-    let (strokes, traced) = (drawing.free(), drawing.traced());
+    let (strokes, traced, placed) = (drawing.free(), drawing.traced(), drawing.placed());
     let mut scales = Vec::with_capacity(strokes.numbers().len());
     for (i, stroke) in strokes.iter().enumerate() {
         if stroke.is_area() {
+            let pace = if i < placed { PLACED } else { 1.0 };
+            let [area, color] = [area, color].map(|scale| pace * scale);
             scales.resize(scales.len() + 2 * stroke.points.len(), area);
             let color = color * AREA_COLOR;
             // Radius, three channels, opacity: an area has no radius and keeps its opacity.

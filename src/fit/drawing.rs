@@ -65,6 +65,8 @@ pub(super) struct Counters {
     pub(super) lost: usize,
     /// The first stage that was not traced, unless none was.
     pub(super) traced_until: usize,
+    /// The first stage that was not traced where it is seen, unless none was.
+    pub(super) placed_until: usize,
     /// Strokes that were removed because nobody could see them.
     pub(super) hidden: usize,
 }
@@ -280,9 +282,24 @@ impl Drawing {
 
     /// Number of free strokes, from the back, in stages that were traced.
     pub(super) fn traced(&self) -> usize {
+        self.before(self.counters.traced_until)
+    }
+
+    /// Number of free marks, from the back, in stages that were traced where they are seen.
+    pub(super) fn placed(&self) -> usize {
+        self.before(self.counters.placed_until)
+    }
+
+    /// Number of free marks in earlier stages.
+    fn before(&self, stage: usize) -> usize {
         let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();
-        // Stages never decrease from back to front, so a binary search finds the first one that was not traced.
-        free.partition_point(|&stage| stage < self.counters.traced_until)
+        // Stages never decrease from back to front, so a binary search finds the first one that is not earlier.
+        free.partition_point(|&own| own < stage)
+    }
+
+    /// True if all free marks were traced where they are seen, so that no descent knows better.
+    pub(super) fn is_placed(&self) -> bool {
+        self.placed() == self.free().len()
     }
 
     /// True for a traced drawing of few marks, which come to share widths and colours.

@@ -22,6 +22,8 @@
 mod areas;
 mod bridges;
 mod choice;
+mod contour;
+mod edge;
 mod even;
 mod fill;
 mod gain;
@@ -55,6 +57,8 @@ pub struct Traced {
     /// Squared error that the mark removes, summed over pixels and channels: a stroke alone, an area on top of what it
     /// lies on.
     pub gain: f32,
+    /// True if the mark is where it is seen, so that no descent knows better.
+    pub is_placed: bool,
 }
 
 /// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row. They are
@@ -110,7 +114,7 @@ fn marks_of(
         };
         let fills = flat.fills();
         match choice::chosen(&flat, fills, strokes, pixels, &price) {
-            Ok(traced) => return traced,
+            Ok(traced) => return placed(&flat, &traced).unwrap_or(traced),
             // What strokes do not draw stays with what it came apart from.
             Err(lines) => {
                 let pixels = |line| flat.pixels_of(line).collect();
@@ -120,6 +124,19 @@ fn marks_of(
             }
         }
     }
+}
+
+/// The same areas as those that were traced where their edges are seen, if there are no strokes and colours tell where that is.
+fn placed(flat: &Flat<'_>, traced: &[Traced]) -> Option<Vec<Traced>> {
+    let are_areas = traced.iter().all(|traced| traced.mark.as_area().is_some());
+    let areas = flat.tracing.may_place && are_areas && !traced.is_empty();
+    let areas = areas.then(|| flat.placed()).flatten()?;
+    let placed = areas.into_iter().map(|filled| Traced {
+        mark: filled.area.into(),
+        gain: filled.gain,
+        is_placed: true,
+    });
+    Some(placed.collect())
 }
 
 /// The lines of a picture on its canvas that lie between two rows of pixels, if crossings tell that there are such.
@@ -147,6 +164,7 @@ impl From<TracedStroke> for Traced {
         Self {
             mark: stroke.into(),
             gain,
+            is_placed: false,
         }
     }
 }

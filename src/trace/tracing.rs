@@ -7,6 +7,10 @@ pub struct Tracing {
     pub doubt: f32,
     /// True if gradients may fill shapes.
     pub has_shades: bool,
+    /// Most marks. A shape comes apart into elements of its own only where there is room.
+    pub most: usize,
+    /// True if areas may be placed where their edges are seen.
+    pub may_place: bool,
     /// True for details that a drawing has lost: they are small, and many are pale.
     pub is_of_details: bool,
 }

@@ -12,7 +12,7 @@ use strokefit::fit::{
     Budget, CancelToken, Config, Fit, Fitter, Preset, Progress, Rates, Recipe, Stop,
 };
 use strokefit::image::Image;
-use strokefit::scene::{Mark, Scene};
+use strokefit::scene::{Mark, Marks, Scene};
 use strokefit::svg;
 use strokefit::verify::{self, Verdict};
 
@@ -318,6 +318,8 @@ fn strokes_that_become_no_numbers_are_dropped_and_counted() {
         recipe: Some(recipe),
         // All at once: a stage that keeps nothing is the last.
         stages: Some(1),
+        // Areas are not fitted.
+        marks: Marks::Strokes,
         ..draft(40)
     };
     let fit = drawn(&ball(), &config);

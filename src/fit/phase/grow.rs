@@ -167,8 +167,12 @@ pub(in crate::fit) fn stage(session: &mut Session<'_>, purpose: Purpose) -> Resu
         softness: Some(scale.min(SOFTEST)),
         ..Course::new(stages.iterations, stages.rates)
     };
-    let mut descent = session.descent(course);
-    descend(session, &mut descent, None)?;
+    if session.drawing.is_placed() {
+        session.show();
+    } else {
+        let mut descent = session.descent(course);
+        descend(session, &mut descent, None)?;
+    }
     let accepted = accept(&mut session.drawing, session.price);
     if purpose == Purpose::Trace {
         let [layers, strokes] = &mut session.history.traced;

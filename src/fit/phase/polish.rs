@@ -33,6 +33,9 @@ pub(in crate::fit) fn polish(session: &mut Session<'_>, purpose: Purpose) -> Res
             return Ok(());
         }
         session.drawing.thaw();
+        if session.drawing.is_placed() {
+            return Ok(());
+        }
         session.progress.enter(session.history.records.len());
     }
     // A fidelity is to be met by as few strokes as possible; their number is corrected afterwards.

@@ -14,6 +14,7 @@ use crate::fit::run::session::Session;
 use crate::image::Image;
 use crate::metrics::Details;
 use crate::render::Canvas;
+use crate::trace::Tracing;
 use crate::scene::Marks;
 
 /// Least contrast of recovered details. `details_kept` counts details from this contrast on, too.
@@ -53,7 +54,12 @@ pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
         Marks::Areas => Marks::Areas,
         Marks::Auto | Marks::Strokes => Marks::Strokes,
     };
-    let traced = trace::paying(session, &canvases, marks, true);
+    let tracing = Tracing {
+        may_place: false,
+        is_of_details: true,
+        ..trace::tracing(session)
+    };
+    let traced = trace::paying(session, &canvases, marks, tracing);
     Ok(match trace::add(session, traced) {
         true => Outcome::Seeded(Purpose::Recover),
         false => Outcome::Over,

@@ -60,7 +60,9 @@ pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     }
     // The last changes of single marks; from here on shared numbers are tied.
     let inks = inks::run(session);
-    forms::run(session)?;
+    if !session.drawing.is_placed() {
+        forms::run(session)?;
+    }
     let mut ties = share_within_bytes(session);
     ties.extend(inks::ties(&session.drawing, &inks));
     session.history.ties = ties;

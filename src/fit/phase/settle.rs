@@ -58,7 +58,8 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
 fn run(session: &mut Session<'_>) -> Result<RenderedFile> {
     session.progress.settle();
     let mut file = session.render_file()?;
-    if !allows_round(session, 0) {
+    // Areas are where they were traced.
+    if !allows_round(session, 0) || session.drawing.is_placed() {
         return Ok(file);
     }
     let rates = session.restricted_rates();

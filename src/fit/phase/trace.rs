@@ -44,7 +44,14 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
         true => Vec::new(),
         false => {
             let canvases = canvases(&mut session.drawing);
-            paying(session, &canvases, session.config.marks(), false)
+            let marks = session.config.marks();
+            let tracing = tracing(session);
+            let placed = paying(session, &canvases, marks, tracing);
+            match is_faithful(session, &placed) {
+                true => placed,
+                // Areas where edges are seen draw another picture: colours told them wrongly.
+                false => paying(session, &canvases, marks, Tracing { may_place: false, ..tracing }),
+            }
         }
     };
     if add(session, traced) {
@@ -67,22 +74,47 @@ pub(super) fn canvases(drawing: &mut Drawing) -> Vec<Canvas> {
     drawing.surfaces.iter().map(|s| s.canvas.clone()).collect()
 }
 
-/// The marks traced on `canvases`, of a whole picture or of details that its drawing has lost, that are worth their price, in
-/// painting order.
+/// What tracing looks for in the whole picture.
+pub(super) fn tracing(session: &Session<'_>) -> Tracing {
+    let (config, surfaces) = (session.config, &session.drawing.surfaces);
+    let most = session.limit.min(session.task.most_marks);
+    // A gradient has many colours, and on a transparent page many opacities.
+    Tracing {
+        doubt: session.task.doubt,
+        has_shades: config.colors == Colors::Free && !(config.opaque && surfaces.len() > 1),
+        most: most.saturating_sub(session.drawing.len()),
+        may_place: true,
+        is_of_details: false,
+    }
+}
+
+/// Fidelity of areas that need no descent, dB. A guess.
+const FAITHFUL_DB: f64 = 36.0;
+
+/// True unless the drawing with marks that were traced where they are seen is less like the picture than descents make it.
+fn is_faithful(session: &mut Session<'_>, traced: &[Traced]) -> bool {
+    if !traced.iter().any(|traced| traced.is_placed) {
+        return true;
+    }
+    session.drawing.sharpen(0.0);
+    let before = session.drawing.snapshot();
+    let marks: Vec<Mark> = traced.iter().map(|traced| traced.mark.clone()).collect();
+    let stage = session.drawing.last_stage();
+    session.drawing.extend_by(&marks, stage);
+    let is_faithful = psnr_db(session.drawing.mse()) >= FAITHFUL_DB;
+    session.drawing.revert(before);
+    is_faithful
+}
+
+/// The marks traced on `canvases` that are worth their price, in painting order.
 pub(super) fn paying(
     session: &Session<'_>,
     canvases: &[Canvas],
     marks: Marks,
-    is_of_details: bool,
+    tracing: Tracing,
 ) -> Vec<Traced> {
     let (config, price) = (session.config, session.price);
     let surfaces = &session.drawing.surfaces;
-    // A gradient has many colours, and on a transparent page many opacities.
-    let tracing = Tracing {
-        doubt: session.task.doubt,
-        has_shades: config.colors == Colors::Free && !(config.opaque && surfaces.len() > 1),
-        is_of_details,
-    };
     let surfaces = surfaces.iter().zip(canvases);
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
     // Areas and strokes compete by their bytes alone; whether each is worth its price is asked below.
@@ -129,6 +161,7 @@ pub(super) fn add(session: &mut Session<'_>, traced: Vec<Traced>) -> bool {
     if count == 0 {
         return false;
     }
+    let are_placed = traced.iter().all(|traced| traced.is_placed);
     let marks = most_gaining(traced, count);
     let began = session.timer.elapsed();
     session.progress.enter(index);
@@ -136,7 +169,11 @@ pub(super) fn add(session: &mut Session<'_>, traced: Vec<Traced>) -> bool {
     session.drawing.freeze();
     let before = (session.drawing.len(), psnr_db(session.drawing.mse()));
     session.drawing.extend_by(&marks, index);
-    session.drawing.counters.traced_until = index + 1;
+    let counters = &mut session.drawing.counters;
+    counters.traced_until = index + 1;
+    if are_placed && counters.placed_until == index {
+        counters.placed_until = index + 1;
+    }
     session.history.stage = Some(OpenStage {
         planned: PlannedStage {
             index,

@@ -247,6 +247,16 @@ impl<'a> Session<'a> {
         self.progress.tell(&self.drawing, mse) && self.progress.stopped().is_none()
     }
 
+    /// Shows the observer a drawing without descent, and looks at the time.
+    pub(in crate::fit) fn show(&mut self) {
+        self.check_for_stop();
+        if self.timer.is_over() {
+            self.progress.stop(Stop::Time);
+        }
+        let mse = self.drawing.mse();
+        self.progress.tell(&self.drawing, mse);
+    }
+
     /// True if the fit was asked to stop, and is finishing its drawing.
     pub(in crate::fit) fn is_leaving(&self) -> bool {
         self.progress.is_interrupted()

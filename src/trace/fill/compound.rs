@@ -2,15 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use kurbo::ParamCurve;
+
 use super::super::areas::{LEVEL, Pixel, away, mix};
+use super::super::edge::Ring;
 use crate::scene::{Path, Shade};
 
-/// A shape to be painted.
+/// A shape to be painted, with rings as they are described.
 #[derive(Debug, Clone)]
-pub(in crate::trace) struct Fill {
+pub(in crate::trace) struct Fill<R = Path> {
     /// The region that it shows.
     pub(in crate::trace) region: u32,
-    pub(super) rings: Vec<Path>,
+    pub(super) rings: Vec<R>,
     pub(super) color: Pixel,
     /// Its gradients, back to front.
     pub(super) shades: Vec<Shade>,
@@ -27,13 +30,13 @@ pub(in crate::trace) struct Fill {
 const ALIKE: f32 = 3.0;
 
 /// Joins shapes, which are given from back to front, but for those that `stand_alone`.
-pub(super) fn joined(
-    fills: Vec<Fill>,
+pub(super) fn joined<R>(
+    fills: Vec<Fill<R>>,
     neighbours: &[BTreeMap<u32, u32>],
-    stand_alone: impl Fn(&Fill) -> bool,
-) -> Vec<Fill> {
+    stand_alone: impl Fn(&Fill<R>) -> bool,
+) -> Vec<Fill<R>> {
     let mut touching = touching(&fills, neighbours);
-    let mut fills: Vec<Option<Fill>> = fills.into_iter().map(Some).collect();
+    let mut fills: Vec<Option<Fill<R>>> = fills.into_iter().map(Some).collect();
     for upper in 1..fills.len() {
         for lower in (0..upper).rev() {
             let (Some(a), Some(b)) = (&fills[lower], &fills[upper]) else {
@@ -65,7 +68,51 @@ pub(super) fn joined(
     fills.into_iter().flatten().collect()
 }
 
-impl Fill {
+/// Most rings of a shape some of which leave it, to be elements of their own, and of one that all of them leave. A QR code stays one
+/// path. A guess.
+const SPLIT_RINGS: [usize; 2] = [12, 24];
+
+/// The paths of each element of a shape: one, besides, as far as there is `room`, circles, ellipses and round rectangles that are apart
+/// from all other rings. A drawing
+/// of one shape is one path by its artist, too, unless it is nothing but such.
+pub(super) fn paths(rings: &[Ring], is_only: bool, room: &mut usize) -> Vec<Vec<Path>> {
+    let bodies: Vec<Path> = rings.iter().map(|ring| ring.path(false)).collect();
+    // A hole and the ring around it are one shape only together.
+    let is_alone = |i: usize| {
+        let mut others = bodies.iter().enumerate().filter(|&(k, _)| k != i);
+        others.all(|(_, other)| are_apart(&bodies[i], other))
+    };
+    let is_element = |(i, ring): (usize, &Ring)| ring.is_shorter_alone() && is_alone(i);
+    let elements: Vec<bool> = rings.iter().enumerate().map(is_element).collect();
+    let is_all = elements.iter().all(|is| *is);
+    let more = elements.iter().filter(|is| **is).count() - usize::from(is_all);
+    let is_split =
+        rings.len() <= SPLIT_RINGS[usize::from(is_all)] && (is_all || !is_only) && more <= *room;
+    if is_split {
+        *room -= more;
+    }
+    let mut rest = Vec::new();
+    let mut paths = Vec::new();
+    for ((ring, body), is_element) in rings.iter().zip(bodies).zip(elements) {
+        match is_element && is_split || rings.len() == 1 {
+            true => paths.push(vec![ring.path(true)]),
+            false => rest.push(body),
+        }
+    }
+    let rest = Some(rest).filter(|rest| !rest.is_empty());
+    paths.into_iter().chain(rest).collect()
+}
+
+/// True if neither of two rings lies in the other one.
+fn are_apart(a: &Path, b: &Path) -> bool {
+    let lies_in = |inner: &Path, outer: &Path| {
+        let start = inner.segments().next().map(|first| first.start());
+        start.is_some_and(|p| kurbo::Shape::winding(&outer.bezier(), p) != 0)
+    };
+    !lies_in(a, b) && !lies_in(b, a)
+}
+
+impl<R> Fill<R> {
     fn join(&mut self, more: Self) {
         let all = self.size + more.size;
         let share = more.size / all.max(f32::MIN_POSITIVE);
@@ -78,14 +125,14 @@ impl Fill {
 }
 
 /// For each shape those that cover a region of its own or one beside it.
-fn touching(fills: &[Fill], neighbours: &[BTreeMap<u32, u32>]) -> Vec<BTreeSet<usize>> {
+fn touching<R>(fills: &[Fill<R>], neighbours: &[BTreeMap<u32, u32>]) -> Vec<BTreeSet<usize>> {
     let mut covering: Vec<Vec<usize>> = vec![Vec::new(); neighbours.len()];
     for (i, fill) in fills.iter().enumerate() {
         fill.covers
             .iter()
             .for_each(|&r| covering[r as usize].push(i));
     }
-    let around = |(i, fill): (usize, &Fill)| {
+    let around = |(i, fill): (usize, &Fill<R>)| {
         let own = fill.covers.iter();
         let near = own.clone().flat_map(|&r| neighbours[r as usize].keys());
         let regions: BTreeSet<u32> = own.chain(near).copied().collect();

@@ -1,7 +1,7 @@
 //! Corners of an outline: where lines fitted to either side turn. They are put where the two lines meet, since the
 //! pixels have rounded them.
 
-use super::contour::Place;
+use super::super::contour::Place;
 use crate::math::{self, distance};
 
 /// A corner's sides are fitted from the first to the second distance from it, px. A guess.

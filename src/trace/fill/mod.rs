@@ -16,7 +16,6 @@
 
 mod colors;
 mod compound;
-mod contour;
 mod corners;
 mod hull;
 mod mixtures;
@@ -33,12 +32,14 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::areas::{self, LEVEL, Pixel, Pixels, away, distance2, is_opaque, mix};
+use super::contour::{self, Field, Place, between};
+use super::edge::{self, Ring};
 use super::parts::{Part, Parts};
 use super::tracing::Tracing;
+use crate::math::{self, Point};
 use crate::scene::{Area, Path, Rgb};
 use colors::{CANVAS, NONE};
 pub(super) use compound::Fill;
-use contour::{Field, Place, between};
 use mixtures::Mixture;
 use outline::Surroundings;
 use regions::{Region, Regions};
@@ -62,11 +63,23 @@ pub(super) struct Flat<'a> {
     neighbours: Vec<BTreeMap<u32, u32>>,
     translucent: Translucent,
     stack: Stack,
+    pub(super) tracing: Tracing,
+    /// How far the pixels of each region are from its colour, in the mean of squares.
+    spreads: Vec<f64>,
 }
 
 /// The share of the pixels that has to be flat, or there are no filled shapes. Drawings of filled shapes have 0.69 to 0.99,
 /// photographs 0.07 to 0.31, scanned line drawings 0.53 to 0.68.
 const LEAST_FLAT: f32 = 0.6;
+/// Farthest that shapes go on beyond the picture's border, px. A guess: twice what fields do.
+const BEYOND: f64 = 4.0;
+/// Standard deviation of the share of a pixel that renderers say an edge covers: resvg takes 16 samples, and is off by 0.05 in the
+/// mean of squares. Of 16 icons of 128, 256 and 512 px, 0.01, 0.05 and 0.12 leave a mean colour error of 0.0075, 0.011 and 0.016
+/// ΔE00 with 1.00, 0.91 and 0.86 times the artist's numbers.
+const RENDERED: f64 = 0.05;
+/// Edges whose pixels deviate by less from what is described, shares, are where they are seen. A guess: where colours are few they deviate
+/// by 0.05 to 0.1, between the steps of gradients by 0.2 to 8.
+const SURE: f64 = 0.2;
 /// The share of the squared residual that colours and their mixtures have to explain. Drawings of filled shapes have 0.93 to 1,
 /// photographs 0.30 to 0.77, scanned line drawings 0.86 to 0.93.
 const LEAST_EXPLAINED: f32 = 0.9;
@@ -107,14 +120,18 @@ impl<'a> Flat<'a> {
         };
         let drawn: Vec<bool> = regions.list.iter().zip(0..).map(is_drawn).collect();
         let stack = Stack::of(&regions, &neighbours, &drawn, &translucent);
-        Some(Self {
+        let mut flat = Self {
             pixels,
             mattes,
             regions,
             neighbours,
             translucent,
             stack,
-        })
+            tracing,
+            spreads: Vec::new(),
+        };
+        flat.spreads = flat.spreads();
+        Some(flat)
     }
 
     /// The shapes of the stack, from back to front.
@@ -135,7 +152,7 @@ impl<'a> Flat<'a> {
             self.part(fill.region) != Part::Whole
         });
         let filled = joined.iter().flat_map(|fill| {
-            self.areas_of(fill).map(|area| Filled {
+            self.area_of(fill).map(|area| Filled {
                 area,
                 gain: fill.gain / self.mattes as f32,
                 rank: fill.rank,
@@ -144,22 +161,90 @@ impl<'a> Flat<'a> {
         filled.collect()
     }
 
-    /// The areas of a shape, back to front: one, or one for each of its gradients.
-    pub(super) fn areas_of(&self, fill: &Fill) -> impl Iterator<Item = Area> {
+    /// The areas of a shape: one, or one for each of its gradients.
+    pub(super) fn area_of(&self, fill: &Fill) -> impl Iterator<Item = Area> {
+        self.areas_of(fill, vec![fill.rings.clone()])
+    }
+
+    /// The areas of a shape, back to front, for each of its gradients and each of some elements.
+    fn areas_of<R>(
+        &self,
+        fill: &Fill<R>,
+        paths: Vec<Vec<Path>>,
+    ) -> impl Iterator<Item = Area> + use<R> {
         let (color, opacity) = areas::ink(&fill.color, self.mattes);
         let plain = fill.shades.is_empty().then_some(None);
         // A gradient has opacities of its own.
         let opacity = if fill.shades.is_empty() { opacity } else { 1.0 };
         let shades: Vec<_> = fill.shades.iter().cloned().map(Some).collect();
-        let rings = fill.rings.clone();
-        plain.into_iter().chain(shades).map(move |shade| Area {
-            shade,
-            ..Area::plain(rings.clone(), color, opacity)
+        plain.into_iter().chain(shades).flat_map(move |shade| {
+            let area = move |rings: &Vec<Path>| Area {
+                shade: shade.clone(),
+                ..Area::plain(rings.clone(), color, opacity)
+            };
+            paths.iter().map(area).collect::<Vec<_>>()
         })
     }
 
     /// The shape of a layer.
     fn fill(&self, layer: &Layer, gains: &[f32]) -> Option<Fill> {
+        let (field, free) = self.seen_of(layer);
+        let around = Surroundings {
+            page: [self.regions.width, self.regions.height].map(|v| v as f32),
+            field: &field,
+            depth: |at, outward| self.depth(at, outward, &free, HIDDEN),
+        };
+        // A contour around less than a region may have is noise of the shares.
+        let least = 0.6 * colors::LEAST_AREA as f32;
+        let contours = field.contours();
+        let rings = contours
+            .iter()
+            .filter(|ring| contour::twice_area(ring).abs() > 2.0 * least);
+        let rings = rings.filter_map(|contour| outline::ring(contour, outline::TOLERANCE, &around));
+        self.filled(layer, rings.collect(), gains)
+    }
+
+    /// The areas of all layers where their edges are seen, back to front; `None` where colours do not tell that.
+    pub(super) fn placed(&self) -> Option<Vec<Filled>> {
+        let gains = self.gains();
+        let layers = self.stack.layers.par_iter();
+        let fills: Option<Vec<Option<Fill<Ring>>>> =
+            layers.map(|layer| self.placed_fill(layer, &gains)).collect();
+        let fills: Vec<Fill<Ring>> = fills?.into_iter().flatten().collect();
+        let joined = compound::joined(fills, &self.neighbours, |fill| {
+            self.part(fill.region) != Part::Whole
+        });
+        let is_only = joined.len() == 1;
+        let mut room = self.tracing.most.saturating_sub(joined.len());
+        let filled = joined.iter().flat_map(|fill| {
+            let paths = compound::paths(&fill.rings, is_only, &mut room);
+            self.areas_of(fill, paths).map(|area| Filled {
+                area,
+                gain: fill.gain / self.mattes as f32,
+                rank: fill.rank,
+            })
+        });
+        Some(filled.collect())
+    }
+
+    /// The shape of a layer by its edges; `None` where colours do not tell where they are.
+    fn placed_fill(&self, layer: &Layer, gains: &[f32]) -> Option<Option<Fill<Ring>>> {
+        let (width, height) = (self.regions.width, self.regions.height);
+        let (field, mut free) = self.seen_of(layer);
+        let doubts = self.doubts(layer, &field, &free);
+        free[layer.region as usize] = false;
+        // Beyond its border the picture hides what it cuts, but shapes do not go on far.
+        let far = |at: f64, size: usize| !(-BEYOND..size as f64 + BEYOND).contains(&at);
+        let is_hidden = |p: Point| {
+            let is_far = far(p.x, width) || far(p.y, height);
+            !is_far && self.share_at(math::xy(p), &free) > HIDDEN
+        };
+        let (rings, deviation) = edge::rings(&field, &doubts, is_hidden);
+        (deviation < SURE).then(|| self.filled(layer, rings, gains))
+    }
+
+    /// The shares of pixels that a layer covers, and for each region whether it hides the layer's outline.
+    fn seen_of(&self, layer: &Layer) -> (Field, Vec<bool>) {
         let regions = &self.regions;
         let mut covered = vec![false; regions.list.len()];
         layer
@@ -173,22 +258,12 @@ impl<'a> Flat<'a> {
             covered[r as usize] || (is_above && !is_seen)
         };
         let free: Vec<bool> = (0..regions.list.len() as u32).map(is_free).collect();
-        let field = self.field(layer, &covered);
-        let around = Surroundings {
-            page: [regions.width, regions.height].map(|v| v as f32),
-            field: &field,
-            depth: |at, outward| self.depth(at, outward, &free, HIDDEN),
-        };
-        // A contour around less than a region may have is noise of the shares.
-        let least = 0.6 * colors::LEAST_AREA as f32;
-        let contours = field.contours();
-        let rings = contours
-            .iter()
-            .filter(|ring| contour::twice_area(ring).abs() > 2.0 * least);
-        let rings: Vec<Path> = rings
-            .filter_map(|contour| outline::ring(contour, outline::TOLERANCE, &around))
-            .collect();
-        let region = &regions.list[layer.region as usize];
+        (self.field(layer, &covered), free)
+    }
+
+    /// The shape of a layer with these rings, if there are any.
+    fn filled<R>(&self, layer: &Layer, rings: Vec<R>, gains: &[f32]) -> Option<Fill<R>> {
+        let region = &self.regions.list[layer.region as usize];
         (!rings.is_empty()).then(|| Fill {
             rings,
             color: self.own_color(layer.region),
@@ -199,6 +274,73 @@ impl<'a> Flat<'a> {
             rank: layer.rank,
             covers: layer.covers.clone(),
         })
+    }
+
+    /// The standard deviation of the share of each pixel of a field; infinite where what is `free` hides it.
+    fn doubts(&self, layer: &Layer, field: &Field, free: &[bool]) -> Vec<f64> {
+        let regions = &self.regions;
+        let is_hiding = |r: u32| free[r as usize] && r != layer.region;
+        let doubt = |k: usize| {
+            let [x, y] = [
+                field.origin[0] + (k % field.width) as i32,
+                field.origin[1] + (k / field.width) as i32,
+            ];
+            if x < 0 || y < 0 || x as usize >= regions.width || y as usize >= regions.height {
+                return f64::INFINITY;
+            }
+            let i = y as usize * regions.width + x as usize;
+            let (own, second) = (regions.of[i], regions.second[i]);
+            if is_hiding(own) || (regions.share[i] > 0.0 && is_hiding(second)) {
+                return f64::INFINITY;
+            }
+            // A pixel of one region tells by its colour that none of its neighbours' is there.
+            let others = match own == second {
+                true => self.beside(i),
+                false => vec![second],
+            };
+            let others = others.into_iter().map(|other| {
+                let contrast = f64::from(away(&self.shown(own, i), &self.shown(other, i)));
+                let spread = |r: u32| self.spreads[r as usize];
+                (contrast, spread(own).max(spread(other)))
+            });
+            let (contrast, spread) = others
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .unwrap_or((1.0, 0.0));
+            let noise = f64::from(self.tracing.doubt.max(0.3) * LEVEL).max(spread);
+            math::hypot(RENDERED, noise / contrast.max(0.01))
+        };
+        (0..field.values.len()).map(doubt).collect()
+    }
+
+    /// The regions that the pixels beside a pixel belong to, but its own.
+    fn beside(&self, i: usize) -> Vec<u32> {
+        let Regions {
+            width, height, of, ..
+        } = &self.regions;
+        let [x, y] = [i % width, i / width];
+        let beside = [
+            (x > 0).then(|| i - 1),
+            (x + 1 < *width).then_some(i + 1),
+            (y > 0).then(|| i - width),
+            (y + 1 < *height).then_some(i + width),
+        ];
+        let beside = beside.into_iter().flatten().map(|k| of[k]);
+        beside.filter(|r| *r != of[i]).collect()
+    }
+
+    /// How far the colours of the pixels of each region are from what is shown of it, in the mean of squares.
+    fn spreads(&self) -> Vec<f64> {
+        let spread = |(region, r): (&Region, u32)| {
+            let own = region.members.iter().map(|&i| i as usize);
+            let pure = own.filter(|&i| self.regions.share[i] == 0.0);
+            let (sum, count) = pure.fold((0.0, 0.0), |(sum, count): (f64, f64), i| {
+                let away = away(&self.pixels.target.at(i), &self.shown(r, i));
+                (sum + f64::from(away * away), count + 1.0)
+            });
+            (sum / count.max(1.0)).sqrt()
+        };
+        let numbered: Vec<(&Region, u32)> = self.regions.list.iter().zip(0..).collect();
+        numbered.into_par_iter().map(spread).collect()
     }
 
     /// The colour of a shape on a clear page, by that of the region and of what it lies on.

@@ -3,7 +3,7 @@
 //! A contour is cut at its corners. Between two of them the cheapest chain of spans within the tolerance is found by
 //! dynamic programme; its spans end at corners of a polygon close to the contour. Hidden edges may lie farther out.
 
-use super::contour::{Field, Place, resampled};
+use super::super::contour::{Field, Place, resampled};
 use super::corners::{Corner, corners};
 use super::span::{MOST, Sample, Span, fit};
 use crate::math;

@@ -1,6 +1,6 @@
 //! Spans: a line or a quadratic spline along some samples of an outline, whose ends are given.
 
-use super::contour::Place;
+use super::super::contour::Place;
 use crate::math::Normal;
 
 /// A sample of an outline that a span has to be near to.

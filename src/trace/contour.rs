@@ -73,6 +73,16 @@ impl Field {
         between(at, [self.width, height], |i| self.values[i])
     }
 
+    /// The value of a pixel of the picture, 0 beyond the field.
+    pub(super) fn share(&self, at: [i32; 2]) -> f32 {
+        let [x, y] = [0, 1].map(|k| at[k] - self.origin[k]);
+        let is_within = x >= 0 && y >= 0 && (x as usize) < self.width;
+        let value = self
+            .values
+            .get(y.max(0) as usize * self.width + x.max(0) as usize);
+        value.filter(|_| is_within).copied().unwrap_or(0.0)
+    }
+
     /// For each edge of the grid of pixel centres that a contour enters a cell through, the edge that it leaves it by.
     ///
     /// Edge 2·i goes from pixel i to the right, edge 2·i + 1 down.
@@ -153,6 +163,17 @@ impl Field {
 }
 
 const NOWHERE: u32 = u32::MAX;
+
+/// True if the first place of a contour lies within another one.
+pub(super) fn is_within(inner: &[Place], outer: &[Place]) -> bool {
+    let [x, y] = inner[0];
+    let next = outer.iter().cycle().skip(1);
+    let crosses = |(a, b): (&Place, &Place)| {
+        let is_level_with = (a[1] > y) != (b[1] > y);
+        is_level_with && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+    };
+    outer.iter().zip(next).filter(|pair| crosses(*pair)).count() % 2 == 1
+}
 
 /// Twice the area within a ring, px²; negative if it runs the other way.
 pub(super) fn twice_area(ring: &[Place]) -> f32 {

@@ -1,0 +1,330 @@
+//! Edges: outlines of few numbers that cover what a picture shows, by exact coverage.
+//!
+//! ```text
+//! samples    places along a contour, by sums of shares
+//! describe   the cheapest ring along them, by description length
+//! shapes     circles, ellipses and rectangles near them
+//! curve      rings of lines, arcs and cubics as functions of few numbers
+//! coverage   the share of each pixel that they cover, and its derivatives
+//! refine     the numbers by Levenberg–Marquardt on the pixels that edges touch
+//! edits      more numbers or fewer, judged by those pixels
+//! ```
+//!
+//! What decides is *description length*: half of χ² of the pixels, and [`describe::PRICE`] for each number.
+
+mod coverage;
+mod curve;
+mod describe;
+mod edits;
+mod refine;
+mod samples;
+mod shapes;
+
+pub(in crate::trace) use curve::Ring;
+
+use super::contour::{self, Field, Place};
+use crate::math::{self, Point};
+use coverage::{Band, Coverage, Page};
+use describe::{Contour, PRICE};
+use refine::Target;
+
+/// The rings around what a field covers. `doubts` are the standard deviations of its shares, infinite where they are unknown, and
+/// `is_hidden` tells where an outline would not be seen. And the deviation of the shares from what is described, in the middle of
+/// edges.
+pub(super) fn rings(
+    field: &Field,
+    doubts: &[f64],
+    is_hidden: impl Fn(Point) -> bool,
+) -> (Vec<Ring>, f64) {
+    let page = field.page();
+    let mut shares = Shares {
+        page,
+        values: field.values.iter().map(|v| f64::from(*v)).collect(),
+        doubts,
+        factor: 1.0,
+    };
+    // 1. The shape and the cheapest description of each contour.
+    let contours = field.contours();
+    let large = |contour: &&Vec<Place>| contour::twice_area(contour).abs() > LEAST_AREA;
+    let contours: Vec<&Vec<Place>> = contours.iter().filter(large).collect();
+    let doubt = |at: [i32; 2]| {
+        Some(doubts[page.index(at)])
+            .filter(|d| d.is_finite())
+            .unwrap_or(0.05)
+    };
+    let described = contours.iter().map(|places| {
+        let (samples, gaps) = samples::samples(field, places, doubt, &is_hidden);
+        let others = contours
+            .iter()
+            .filter(|other| !std::ptr::eq(**other, *places));
+        let is_alone = others
+            .clone()
+            .all(|other| !contour::is_within(other, places) && !contour::is_within(places, other));
+        let shapes = shapes::near(&samples, is_alone);
+        let refined = shapes.iter().map(|shape| shares.refined(shape, &[]));
+        let shape = refined.min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((shape, length)) = &shape
+            && *length < LEAST_LENGTH
+        {
+            return (shape.clone(), None);
+        }
+        let contour = Contour {
+            samples,
+            gaps,
+            is_hidden: &is_hidden,
+        };
+        let ring = describe::ring(&contour);
+        // What is hidden may have led it astray, so that it misses what is seen.
+        let ring = match contour.gaps.is_empty() {
+            true => ring,
+            false => {
+                let rivals = ring.into_iter().chain(describe::polygon_of(places));
+                let rivals = rivals.map(|ring| shares.refined(&ring, &[]).0);
+                let lengths = rivals.map(|ring| (shares.length(&ring), ring));
+                let best = lengths.min_by(|a, b| a.0.total_cmp(&b.0));
+                best.map(|(_, ring)| ring)
+            }
+        };
+        let shape = shape.map(|(shape, _)| shape);
+        match (ring, shape) {
+            (Some(ring), shape) => (ring, shape),
+            (None, Some(shape)) => (shape, None),
+            // A few pixels.
+            (None, None) => (shapes::around(places), None),
+        }
+    });
+    let mut described: Vec<(Ring, Option<Ring>)> = described.collect();
+    // 2. Each ring on what the others leave.
+    let is_single = described.len() == 1;
+    if !is_single {
+        described
+            .iter()
+            .for_each(|(ring, _)| shares.add(ring, -1.0));
+    }
+    let mut misfits: Vec<f64> = Vec::new();
+    for (ring, shape) in &mut described {
+        if !is_single {
+            shares.add(ring, 1.0);
+        }
+        *ring = shares.refined(ring, &[]).0;
+        shares.choose(ring, shape);
+        misfits.extend(shares.misfits(ring));
+        if !is_single {
+            shares.add(ring, -1.0);
+        }
+    }
+    // 3. What edges are off by beyond what pixels tell is the error of the model: mixtures of three colours, blurs, blocks.
+    shares.factor = factor(misfits);
+    // 4. More numbers or fewer, and the shape once more.
+    for (ring, shape) in &mut described {
+        if !is_single {
+            shares.add(ring, 1.0);
+        }
+        edits::improve(ring, &|band| shares.target(band), page);
+        shares.choose(ring, shape);
+        if !is_single {
+            shares.add(ring, -1.0);
+        }
+    }
+    // 5. Of several, those that pay.
+    let mut rings = Vec::new();
+    for (ring, _) in described {
+        if !is_single {
+            shares.add(&ring, 1.0);
+        }
+        if is_single || shares.pay_for(&ring) {
+            if !is_single {
+                shares.add(&ring, -1.0);
+            }
+            rings.push(ring);
+        }
+    }
+    let edges = field.values.iter().zip(doubts).filter(|(share, doubt)| **share > 0.0 && **share < 1.0 && doubt.is_finite());
+    let doubt = math::median(edges.map(|(_, doubt)| *doubt as f32)).map_or(0.0, f64::from);
+    (rings, shares.factor * doubt)
+}
+
+/// Deviations of the edges in units of what the pixels tell, by the errors of pixels in these units; 1 at least.
+fn factor(mut misfits: Vec<f64>) -> f64 {
+    // Of a normal distribution, a quarter is farther away than 1.15 deviations.
+    let at = misfits.len() * 3 / 4;
+    let misfit = match misfits.len() {
+        0 => 0.0,
+        _ => *misfits.select_nth_unstable_by(at, f64::total_cmp).1 / 1.15,
+    };
+    misfit.max(1.0)
+}
+
+/// Twice the area of the smallest contour, px²: that of one pixel, of which marching squares cut the corners.
+const LEAST_AREA: f32 = 0.8;
+
+/// A ring of segments has at least so many numbers, so no such ring has a shorter description than this, nats.
+const LEAST_LENGTH: f64 = 5.0 * PRICE;
+
+impl Field {
+    fn page(&self) -> Page {
+        Page {
+            origin: self.origin,
+            width: self.width,
+            height: self.values.len() / self.width,
+        }
+    }
+}
+
+/// What rings are to cover.
+struct Shares<'a> {
+    page: Page,
+    values: Vec<f64>,
+    doubts: &'a [f64],
+    /// Deviations in units of these.
+    factor: f64,
+}
+
+impl Shares<'_> {
+    /// What is to be covered of a part of the page.
+    fn target(&self, band: Band) -> Target {
+        let indices: Vec<usize> = band.places().map(|at| self.page.index(at)).collect();
+        Target {
+            shares: indices.iter().map(|&i| self.values[i]).collect(),
+            sigmas: indices
+                .iter()
+                .map(|&i| self.factor * self.doubts[i])
+                .collect(),
+            band,
+        }
+    }
+
+    /// Adds what a ring covers, times a sign.
+    fn add(&mut self, ring: &Ring, sign: f64) {
+        let mut values = std::mem::take(&mut self.values);
+        self.covered(ring, |i, share| values[i] += sign * share);
+        self.values = values;
+    }
+
+    /// The ring after Levenberg–Marquardt, and the length of its description on the pixels near it and near others.
+    fn refined(&self, ring: &Ring, others: &[&Ring]) -> (Ring, f64) {
+        const ITERATIONS: usize = 12;
+        let target = self.target(whole(ring, others, self.page));
+        let (ring, chi2) =
+            refine::refined(ring, &refine::all(ring), &target, ITERATIONS, f64::INFINITY);
+        let length = 0.5 * chi2 + PRICE * ring.freedom();
+        (ring, length)
+    }
+
+    /// The length of a rough description of the whole page by one ring: a pixel counts if it is on the wrong side.
+    fn length(&self, ring: &Ring) -> f64 {
+        let mut rest = self.values.clone();
+        self.covered(ring, |i, share| rest[i] -= share);
+        let is_wrong = |(rest, doubt): &(&f64, &f64)| rest.abs() > 0.5 && doubt.is_finite();
+        let wrong = rest.iter().zip(self.doubts).filter(is_wrong).count();
+        0.5 * describe::CAP * wrong as f64 + PRICE * ring.freedom()
+    }
+
+    /// The shares of all pixels that a ring covers, by their indices.
+    fn covered(&self, ring: &Ring, mut each: impl FnMut(usize, f64)) {
+        let band = Band::around(ring, self.page);
+        let shares = Coverage::of(ring, &band).shares();
+        for (at, share) in band.places().zip(shares) {
+            each(self.page.index(at), share);
+        }
+    }
+
+    /// Takes the shape in the place of a ring, and forgets it, if it has the shorter description on the pixels near both.
+    fn choose(&self, ring: &mut Ring, shape: &mut Option<Ring>) {
+        let Some(rival) = shape else { return };
+        let (refined, length) = self.refined(rival, &[ring]);
+        let target = self.target(whole(ring, &[rival], self.page));
+        let own = 0.5 * refine::chi2(ring, &[], &target) + PRICE * ring.freedom();
+        if length <= own {
+            *ring = refined;
+            *shape = None;
+        }
+    }
+
+    /// True if what a ring covers is worth its numbers.
+    fn pay_for(&self, ring: &Ring) -> bool {
+        let mut gain = 0.0;
+        self.covered(ring, |i, share| {
+            let sigma = self.factor * self.doubts[i];
+            let square = |share: f64| (share / sigma) * (share / sigma);
+            gain += square(self.values[i]) - square(self.values[i] - share);
+        });
+        0.5 * gain > PRICE * ring.freedom()
+    }
+
+    /// The errors of the pixels that the edges of a ring touch, in units of their deviations.
+    fn misfits(&self, ring: &Ring) -> Vec<f64> {
+        let target = self.target(whole(ring, &[], self.page));
+        let coverage = Coverage::of(ring, &target.band);
+        let covered = coverage.shares();
+        let mut pixels: Vec<usize> = coverage.touched().collect();
+        pixels.sort_unstable();
+        pixels.dedup();
+        let misfit = |i: usize| ((covered[i] - target.shares[i]) / target.sigmas[i]).abs();
+        let known = pixels.into_iter().filter(|&i| target.sigmas[i].is_finite());
+        known.map(misfit).collect()
+    }
+}
+
+/// The band of all segments of a ring, and near others.
+fn whole(ring: &Ring, others: &[&Ring], page: Page) -> Band {
+    Band::of(ring, &refine::all(ring), others, page)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Point;
+    use super::coverage::{Band, Coverage, Page};
+    use super::curve::{Knot, Ring, Segment};
+    use super::refine::{Target, all, refined};
+    use crate::rng;
+
+    fn knot(x: f64, y: f64, segment: Segment, is_smooth: bool) -> Knot {
+        Knot {
+            at: Point::new(x, y),
+            segment,
+            is_smooth,
+        }
+    }
+
+    #[test]
+    fn a_shape_is_found_again_from_a_tenth_of_its_pixels_away() {
+        // A tab: three sides and a half circle that two of them touch.
+        let ring = Ring::Knots(vec![
+            knot(6.2, 25.1, Segment::Line, false),
+            knot(6.2, 12.4, Segment::Arc(1.0), true),
+            knot(24.6, 12.4, Segment::Line, true),
+            knot(24.6, 25.1, Segment::Line, false),
+        ]);
+        let truth = ring;
+        let page = Page {
+            origin: [0; 2],
+            width: 40,
+            height: 40,
+        };
+        let band = Band::of(&truth, &all(&truth), &[], page);
+        let shares = Coverage::of(&truth, &band).shares();
+        let values = truth.values();
+        let moved: Vec<f64> = values
+            .iter()
+            .zip(0..)
+            .map(|(v, k)| v + 0.3 * (f64::from(rng::draw(0, 0, 0, k)) - 0.5))
+            .collect();
+        let target = Target {
+            band: band.clone(),
+            sigmas: vec![0.01; shares.len()],
+            shares,
+        };
+        let (found, cost) = refined(
+            &truth.with(&moved),
+            &all(&truth),
+            &target,
+            12,
+            f64::INFINITY,
+        );
+        assert!(cost < 0.1, "{cost}");
+        for (found, expected) in found.values().iter().zip(&values) {
+            assert!((found - expected).abs() < 0.002, "{found} {expected}");
+        }
+    }
+}
