@@ -48,7 +48,7 @@ const RADIUS_FACTORS: [f32; 2] = [0.25, 4.0];
 const AREA_COLOR: f32 = 0.1;
 
 /// Factor on the steps of areas that were traced where they are seen. 0, 0.1, 0.3, 1: a map has 43.0, 43.6, 43.5, 42.3 dB.
-const PLACED: f32 = 0.1;
+const PLACED: f32 = 0.0;
 
 /// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8, 42.8, 42.5, 40.8
 /// dB.
