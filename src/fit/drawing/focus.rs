@@ -145,7 +145,7 @@ mod tests {
     use crate::fit::{Budget, Config, Fitter, Objective, Preset};
     use crate::loss::Loss;
     use crate::render::{Backdrop, Gradients, Renderer, Softness, Strokes};
-    use crate::scene::{Cap, Path, Stroke};
+    use crate::scene::{Cap, Marks, Path, Stroke};
 
     fn mask(values: [f32; 4]) -> Image {
         let plane = values.to_vec();
@@ -259,6 +259,8 @@ mod tests {
                 ..Budget::default()
             },
             preset: Preset::Draft,
+            // Areas of few colours are where they are seen, whatever counts.
+            marks: Marks::Strokes,
             ..Config::default()
         };
         let picture = checks();

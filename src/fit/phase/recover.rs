@@ -14,8 +14,8 @@ use crate::fit::run::session::Session;
 use crate::image::Image;
 use crate::metrics::Details;
 use crate::render::Canvas;
-use crate::trace::Tracing;
 use crate::scene::Marks;
+use crate::trace::Tracing;
 
 /// Least contrast of recovered details. `details_kept` counts details from this contrast on, too.
 const CONTRAST: f32 = 10.0 / 255.0;

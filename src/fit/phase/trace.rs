@@ -50,7 +50,15 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
             match is_faithful(session, &placed) {
                 true => placed,
                 // Areas where edges are seen draw another picture: colours told them wrongly.
-                false => paying(session, &canvases, marks, Tracing { may_place: false, ..tracing }),
+                false => paying(
+                    session,
+                    &canvases,
+                    marks,
+                    Tracing {
+                        may_place: false,
+                        ..tracing
+                    },
+                ),
             }
         }
     };

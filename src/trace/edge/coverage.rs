@@ -24,7 +24,10 @@ impl Page {
     fn clipped(&self, from: Point, to: Point) -> Option<[Point; 2]> {
         let way = to - from;
         let mut range = [0.0_f64, 1.0];
-        let axes = [(from.x, way.x, 0, self.width), (from.y, way.y, 1, self.height)];
+        let axes = [
+            (from.x, way.x, 0, self.width),
+            (from.y, way.y, 1, self.height),
+        ];
         for (at, way, axis, size) in axes {
             let low = f64::from(self.origin[axis] - MARGIN);
             let high = low + size as f64 + 2.0 * f64::from(MARGIN);
@@ -111,7 +114,8 @@ impl Band {
                 (*low, *high) = (low.min(at), high.max(at));
             }
         }
-        let [rows, columns] = [rows, columns].map(|[low, high]| [low.floor() as i32, high.ceil() as i32]);
+        let [rows, columns] =
+            [rows, columns].map(|[low, high]| [low.floor() as i32, high.ceil() as i32]);
         let top = page.origin[1];
         let rows = rows[0].max(top)..rows[1].min(top + page.height as i32);
         let pieces = rows.map(|y| [y, columns[0], columns[1]]);
@@ -294,9 +298,10 @@ impl<'a> Coverage<'a> {
         for (run, before) in self.band.runs.iter().zip(&self.band.before) {
             let end = run.offset + (run.end - run.first) as usize;
             let mut sum = *before;
-            for k in run.offset..end {
-                sum += self.steps[k];
-                shares[k] += sum;
+            let steps = &self.steps[run.offset..end];
+            for (share, step) in shares[run.offset..end].iter_mut().zip(steps) {
+                sum += step;
+                *share += sum;
             }
         }
         shares

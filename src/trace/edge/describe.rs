@@ -354,8 +354,10 @@ fn joint([a, b]: [End; 2], lengths: [usize; 2], sigma: f64, may_be_smooth: bool)
     let middle = a.at.midpoint(b.at);
     // Smooth: the ends are at one place, and their directions alike, as far as their samples tell.
     let told = |length: usize| 4.0 * sigma / length as f64;
-    let spread = (told(lengths[0]).powi(2) + told(lengths[1]).powi(2) + 0.02 * 0.02).sqrt();
-    let squares = (gap.hypot() / (2.0 * sigma)).powi(2) + (angle / spread).powi(2);
+    let square = |v: f64| v * v;
+    let spread2 = square(told(lengths[0])) + square(told(lengths[1])) + square(0.02);
+    let apart = gap.hypot2() / square(2.0 * sigma);
+    let squares = apart + square(angle) / spread2;
     let smooth = if may_be_smooth && angle.abs() < 0.5 {
         0.5 * squares.min(1e6) - PRICE
     } else {
@@ -369,7 +371,7 @@ fn joint([a, b]: [End; 2], lengths: [usize; 2], sigma: f64, may_be_smooth: bool)
         let over = ((far - most) / 0.25).max(0.0);
         (0.5 * over * over, a.at + along[0] * a.way)
     } else {
-        (0.5 * (gap.hypot() / (2.0 * sigma)).powi(2), middle)
+        (0.5 * apart, middle)
     };
     let is_smooth = smooth <= corner;
     Joint {

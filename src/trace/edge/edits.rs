@@ -96,7 +96,10 @@ fn costs(ring: &Ring, target: &dyn Fn(Band) -> Target, page: Page) -> Vec<f64> {
         let mut pixels: Vec<usize> = alone.touched().collect();
         pixels.sort_unstable();
         pixels.dedup();
-        let square = |i: usize| ((shares[i] - target.shares[i]) / target.sigmas[i]).powi(2);
+        let square = |i: usize| {
+            let error = (shares[i] - target.shares[i]) / target.sigmas[i];
+            error * error
+        };
         0.5 * pixels.into_iter().map(square).sum::<f64>()
     };
     all.into_iter().map(cost).collect()

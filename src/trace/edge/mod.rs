@@ -139,7 +139,11 @@ pub(super) fn rings(
             rings.push(ring);
         }
     }
-    let edges = field.values.iter().zip(doubts).filter(|(share, doubt)| **share > 0.0 && **share < 1.0 && doubt.is_finite());
+    let edges = field
+        .values
+        .iter()
+        .zip(doubts)
+        .filter(|(share, doubt)| **share > 0.0 && **share < 1.0 && doubt.is_finite());
     let doubt = math::median(edges.map(|(_, doubt)| *doubt as f32)).map_or(0.0, f64::from);
     (rings, shares.factor * doubt)
 }

@@ -129,9 +129,7 @@ fn ellipse(samples: &[Sample]) -> Option<Shape> {
     let center = Vec2::new(-0.5 * q, -0.5 * r / p);
     let square = s + center.x * center.x + p * center.y * center.y;
     let radii = [square.sqrt(), (square / p).sqrt()];
-    let is_one = radii
-        .iter()
-        .all(|radius| (0.2..3000.0).contains(radius));
+    let is_one = radii.iter().all(|radius| (0.2..3000.0).contains(radius));
     is_one.then(|| Shape::ellipse(origin + center, radii))
 }
 

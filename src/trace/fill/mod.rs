@@ -85,6 +85,8 @@ const SURE: f64 = 0.2;
 const LEAST_EXPLAINED: f32 = 0.9;
 /// Farthest that a hidden edge may be beyond the samples, px. A guess.
 const HIDDEN: f32 = 32.0;
+/// Share of a place that what lies on top covers from which on an edge is hidden there. A guess.
+const COVERED: f32 = 0.9;
 
 impl<'a> Flat<'a> {
     /// The stack of a picture whose shapes come apart like this, if it is one of few colours.
@@ -208,8 +210,9 @@ impl<'a> Flat<'a> {
     pub(super) fn placed(&self) -> Option<Vec<Filled>> {
         let gains = self.gains();
         let layers = self.stack.layers.par_iter();
-        let fills: Option<Vec<Option<Fill<Ring>>>> =
-            layers.map(|layer| self.placed_fill(layer, &gains)).collect();
+        let fills: Option<Vec<Option<Fill<Ring>>>> = layers
+            .map(|layer| self.placed_fill(layer, &gains))
+            .collect();
         let fills: Vec<Fill<Ring>> = fills?.into_iter().flatten().collect();
         let joined = compound::joined(fills, &self.neighbours, |fill| {
             self.part(fill.region) != Part::Whole
@@ -237,7 +240,7 @@ impl<'a> Flat<'a> {
         let far = |at: f64, size: usize| !(-BEYOND..size as f64 + BEYOND).contains(&at);
         let is_hidden = |p: Point| {
             let is_far = far(p.x, width) || far(p.y, height);
-            !is_far && self.share_at(math::xy(p), &free) > HIDDEN
+            !is_far && self.share_at(math::xy(p), &free) > COVERED
         };
         let (rings, deviation) = edge::rings(&field, &doubts, is_hidden);
         (deviation < SURE).then(|| self.filled(layer, rings, gains))
