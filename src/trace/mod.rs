@@ -11,7 +11,9 @@
 //! spline     corners and control points
 //! gain       the share of the residual that each stroke explains
 //! strokes    all of that
+//! contour    the closed lines along which a field is ½
 //! fill       filled shapes, stacked
+//! edge       their outlines by description length, where edges are seen
 //! even       which shapes a stroke draws
 //! choice     strokes or areas
 //! tracing    what is looked for

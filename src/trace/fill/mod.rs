@@ -8,7 +8,6 @@
 //! translucent what is seen through, and where two such shapes cross
 //! overlaps   which of two shapes lies on top
 //! stack      larger shapes lie below and go on beneath what lies on top
-//! contour    the line along which a shape covers half of a pixel
 //! corners    where that turns
 //! outline    its corners and the splines between them, as few points as are near enough
 //! compound   shapes of one colour with nothing between them are one
