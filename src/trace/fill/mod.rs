@@ -234,6 +234,10 @@ impl<'a> Flat<'a> {
         let (width, height) = (self.regions.width, self.regions.height);
         let (field, mut free) = self.seen_of(layer);
         let doubts = self.doubts(layer, &field, &free);
+        // How far an outline goes on beneath others is a matter of how renderers mix them, so that descents find it.
+        if self.is_partly_hidden(&field, &doubts) {
+            return None;
+        }
         free[layer.region as usize] = false;
         // Beyond its border the picture hides what it cuts, but shapes do not go on far.
         let far = |at: f64, size: usize| !(-BEYOND..size as f64 + BEYOND).contains(&at);
@@ -243,6 +247,25 @@ impl<'a> Flat<'a> {
         };
         let (rings, deviation) = edge::rings(&field, &doubts, is_hidden);
         (deviation < SURE).then(|| self.filled(layer, rings, gains))
+    }
+
+    /// True if the outline of a field runs, on the page, between pixels of which nothing is known.
+    fn is_partly_hidden(&self, field: &Field, doubts: &[f64]) -> bool {
+        let (width, height) = (self.regions.width as i32, self.regions.height as i32);
+        let is_covered = |k: usize| field.values[k] >= 0.5;
+        let crosses = |k: usize, next: usize| {
+            let is_known = doubts[k].is_finite() && doubts[next].is_finite();
+            is_covered(k) != is_covered(next) && !is_known
+        };
+        (0..field.values.len()).any(|k| {
+            let [x, y] = [k % field.width, k / field.width];
+            let [x, y] = [field.origin[0] + x as i32, field.origin[1] + y as i32];
+            let is_within = x >= 0 && y >= 0 && x < width && y < height;
+            let beside = (x + 1 < width).then_some(k + 1);
+            let below = (y + 1 < height).then_some(k + field.width);
+            let mut next = beside.into_iter().chain(below);
+            is_within && next.any(|next| next < doubts.len() && crosses(k, next))
+        })
     }
 
     /// The shares of pixels that a layer covers, and for each region whether it hides the layer's outline.
