@@ -47,9 +47,6 @@ const RADIUS_FACTORS: [f32; 2] = [0.25, 4.0];
 /// Step sizes of the colours of areas, in units of the strokes'. A guess: traced colours are right within a level.
 const AREA_COLOR: f32 = 0.1;
 
-/// Factor on the steps of areas that were traced where they are seen. 0, 0.1, 0.3, 1: a map has 43.0, 43.6, 43.5, 42.3 dB.
-const PLACED: f32 = 0.0;
-
 /// Factor on the steps of traced strokes, which are about where they belong. 0.15, 0.25, 0.4, 1: 39 icons have 42.8, 42.8, 42.5, 40.8
 /// dB.
 pub(super) const TRACED_PACE: f32 = 0.25;
@@ -318,8 +315,8 @@ fn scales(rates: &Rates, drawing: &Drawing) -> Vec<f32> {
     let mut scales = Vec::with_capacity(strokes.numbers().len());
     for (i, stroke) in strokes.iter().enumerate() {
         if stroke.is_area() {
-            let pace = if i < placed { PLACED } else { 1.0 };
-            let [area, color] = [area, color].map(|scale| pace * scale);
+            // Areas that are where they are seen stay. A tenth of the steps: 16 icons of 128 px have 0.077 instead of 0.058 ΔE00.
+            let [area, color] = [area, color].map(|scale| if i < placed { 0.0 } else { scale });
             scales.resize(scales.len() + 2 * stroke.points.len(), area);
             let color = color * AREA_COLOR;
             // Radius, three channels, opacity: an area has no radius and keeps its opacity.
