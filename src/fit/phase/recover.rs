@@ -27,7 +27,9 @@ const REACH: usize = 4;
 /// Seeds a stage of strokes along the details that the polished drawing has lost.
 pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
     let [traced, _] = session.history.traced;
+    // A drawing that is where it is seen has lost no more than the antialiasing of a renderer.
     let is_over = traced == 0
+        || session.drawing.is_placed()
         || !session.recovers()
         || session.progress.stopped().is_some()
         || session.cut_by().is_some();
