@@ -11,7 +11,7 @@ use strokefit::math::{self, Point};
 use strokefit::metrics;
 use strokefit::render::{Backdrop, Canvas, Grid, Renderer, Strokes};
 use strokefit::rng;
-use strokefit::scene::{Cap, MIN_WIDTH, Mark, Path, Scene, Stage, Stroke};
+use strokefit::scene::{Cap, MIN_WIDTH, Mark, Marks, Path, Scene, Stage, Stroke};
 use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -28,6 +28,8 @@ fn drawn(picture: &Image, recipe: Option<Recipe>, strokes: usize, threads: usize
             ..Budget::default()
         },
         preset: Preset::Draft,
+        // Areas that are where they are seen have no descent, whose rates a recipe gives.
+        marks: recipe.as_ref().map_or(Marks::Auto, |_| Marks::Strokes),
         recipe,
         ..Config::default()
     };
