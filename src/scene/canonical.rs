@@ -104,18 +104,9 @@ impl Path {
         if !self.pieces().any(|piece| is_tight(&piece)) {
             return self;
         }
-        let tolerance = grid.step().max(NEAREST);
-        let mut points = self.rewritten(|piece| match is_tight(piece) {
-            true => piece.between_quads(tolerance),
-            false => piece.between().collect(),
-        });
-        // The last piece of a closed path ends at the first point.
-        if self.is_closed() {
-            points.pop();
-        }
+        let path = self.with_quads(grid.step().max(NEAREST), is_tight);
         // Arcs that were rounded stay as they are, or become cubic curves; each round leaves fewer of both.
-        let path = Self::of_points(points, self.is_closed()).rounded(grid);
-        path.with_quads_for_bends(radius, grid)
+        path.rounded(grid).with_quads_for_bends(radius, grid)
     }
 
     /// The path with lines in the place of the pieces for which `is_line` says so; `None` if there is none.

@@ -187,10 +187,18 @@ impl Path {
     /// The path with quadratic curves at most `tolerance` px away from its cubic curves and arcs.
     #[must_use]
     pub(crate) fn quadratic(&self, tolerance: f64) -> Self {
-        if !self.is_mixed() {
-            return self.clone();
+        match self.is_mixed() {
+            true => self.with_quads(tolerance, |_| true),
+            false => self.clone(),
         }
-        let mut points = self.rewritten(|piece| piece.between_quads(tolerance));
+    }
+
+    /// The path with quadratic curves at most `tolerance` px away from the pieces for which `is_one` says so; lines stay.
+    pub(super) fn with_quads(&self, tolerance: f64, is_one: impl Fn(&PathPiece) -> bool) -> Self {
+        let mut points = self.rewritten(|piece| match is_one(piece) {
+            true => piece.between_quads(tolerance),
+            false => piece.between().collect(),
+        });
         // The last piece of a closed path ends at the first point.
         if self.closed {
             points.pop();

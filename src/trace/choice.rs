@@ -112,26 +112,11 @@ pub(super) fn chosen(
         };
         let mark = band.unwrap_or(traced.stroke).into();
         let place = areas.iter().filter(|area| area.rank < rank).count();
-        found.push((
-            2 * place,
-            Traced {
-                mark,
-                gain,
-                is_placed: false,
-            },
-        ));
+        found.push((2 * place, Traced::of(mark, gain)));
     }
     for (place, area) in areas.into_iter().enumerate() {
-        let mark = area.area.into();
-        let gain = area.gain;
-        found.push((
-            2 * place + 1,
-            Traced {
-                mark,
-                gain,
-                is_placed: false,
-            },
-        ));
+        let (mark, gain) = (area.area.into(), area.gain);
+        found.push((2 * place + 1, Traced::of(mark, gain)));
     }
     found.sort_by_key(|(place, _)| *place);
     Ok(found.into_iter().map(|(_, traced)| traced).collect())

@@ -161,13 +161,20 @@ fn parts(areas: Option<&Areas>, pixels: &Pixels<'_>, tracing: Tracing) -> Parts 
     Parts::of(&shapes, pixels.width, pixels.width * pixels.height)
 }
 
-impl From<TracedStroke> for Traced {
-    fn from(TracedStroke { stroke, gain, .. }: TracedStroke) -> Self {
+impl Traced {
+    /// A mark that a descent places.
+    fn of(mark: Mark, gain: f32) -> Self {
         Self {
-            mark: stroke.into(),
+            mark,
             gain,
             is_placed: false,
         }
+    }
+}
+
+impl From<TracedStroke> for Traced {
+    fn from(TracedStroke { stroke, gain, .. }: TracedStroke) -> Self {
+        Self::of(stroke.into(), gain)
     }
 }
 

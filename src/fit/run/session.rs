@@ -241,6 +241,11 @@ impl<'a> Session<'a> {
         let is_known = self.drawing.counters.traced_until > 0;
         self.progress
             .advance(strokes, rest, is_known, self.timer.used());
+        self.tell(mse)
+    }
+
+    /// Shows the observer the drawing, and looks at the time. Returns whether the fit goes on.
+    fn tell(&mut self, mse: f64) -> bool {
         if self.timer.is_over() {
             self.progress.stop(Stop::Time);
         }
@@ -250,11 +255,8 @@ impl<'a> Session<'a> {
     /// Shows the observer a drawing without descent, and looks at the time.
     pub(in crate::fit) fn show(&mut self) {
         self.check_for_stop();
-        if self.timer.is_over() {
-            self.progress.stop(Stop::Time);
-        }
         let mse = self.drawing.mse();
-        self.progress.tell(&self.drawing, mse);
+        self.tell(mse);
     }
 
     /// True if the fit was asked to stop, and is finishing its drawing.

@@ -381,9 +381,12 @@ impl<'a> Coverage<'a> {
         })
     }
 
-    /// The pixels that edges touch; some several times.
-    pub(super) fn touched(&self) -> impl Iterator<Item = usize> + '_ {
-        self.pieces.iter().map(|piece| piece.pixel)
+    /// The pixels that edges touch.
+    pub(super) fn touched(&self) -> Vec<usize> {
+        let mut pixels: Vec<usize> = self.pieces.iter().map(|piece| piece.pixel).collect();
+        pixels.sort_unstable();
+        pixels.dedup();
+        pixels
     }
 }
 

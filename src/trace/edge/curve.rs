@@ -160,7 +160,6 @@ impl Ring {
         let mut points = Vec::new();
         for (i, knot) in knots.iter().enumerate() {
             let to = knots[(i + 1) % knots.len()].at;
-            let chord = to - knot.at;
             points.push(PathPoint::on(knot.at));
             match knot.segment {
                 Segment::Line | Segment::Along(_) => {}
@@ -177,8 +176,7 @@ impl Ring {
                     points.extend([knot.at + length * u, to - length * v].map(PathPoint::cubic));
                 }
                 Segment::Arc(bulge) => {
-                    let middle = knot.at.midpoint(to) + 0.5 * bulge * Vec2::new(chord.y, -chord.x);
-                    points.push(PathPoint::arc(middle));
+                    points.push(PathPoint::arc(arc_middle(knot.at, to, bulge)));
                 }
                 Segment::Cubic(controls) => points.extend(controls.map(PathPoint::cubic)),
             }
@@ -357,9 +355,25 @@ fn turn(three: &[Knot; 3]) -> f64 {
         directions(&three[0], three[1].at),
         directions(&three[1], three[2].at),
     ];
+    angle_between(before, after)
+}
+
+/// The angle from one direction to another, rad, −π to π.
+pub(super) fn angle_between(u: Vec2, v: Vec2) -> f64 {
     // The tangent of half the angle is sin/(1 + cos).
-    let lengths = before.hypot() * after.hypot();
-    2.0 * math::atan(before.cross(after) / (lengths + before.dot(after)).max(1e-12))
+    2.0 * math::atan(u.cross(v) / (u.hypot() * v.hypot() + u.dot(v)).max(1e-12))
+}
+
+/// The weights of a cubic's points at share `t`.
+pub(super) fn weights(t: f64) -> [f64; 4] {
+    let u = 1.0 - t;
+    [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t]
+}
+
+/// The middle of an arc from one place to another: the sagitta is half its bulge times the chord.
+pub(super) fn arc_middle(from: Point, to: Point, bulge: f64) -> Point {
+    let chord = to - from;
+    from.midpoint(to) + 0.5 * bulge * Vec2::new(chord.y, -chord.x)
 }
 
 /// The directions in which the segment behind a vertex begins and ends, at `to`.
@@ -495,24 +509,21 @@ fn knots(shape: &Shape, turn: f64) -> Vec<Knot> {
             let is_none = |side: f64| side < UNSEEN;
             let corners = |is_half: bool| if is_half { half } else { quarter };
             let (no_width, no_height) = (is_none(right - left), is_none(bottom - top));
-            let mut knots = Vec::new();
-            if !no_width {
-                knots.push(knot(left, low.y, Segment::Line));
-                knots.push(knot(right, low.y, corners(no_height)));
-            }
-            if !no_height {
-                knots.push(knot(high.x, top, Segment::Line));
-                knots.push(knot(high.x, bottom, corners(no_width)));
-            }
-            if !no_width {
-                knots.push(knot(right, high.y, Segment::Line));
-                knots.push(knot(left, high.y, corners(no_height)));
-            }
-            if !no_height {
-                knots.push(knot(low.x, bottom, Segment::Line));
-                knots.push(knot(low.x, top, corners(no_width)));
-            }
-            knots
+            // The sides clockwise, and whether each is none, as its neighbours are or not.
+            let sides = [
+                ([(left, low.y), (right, low.y)], no_width, no_height),
+                ([(high.x, top), (high.x, bottom)], no_height, no_width),
+                ([(right, high.y), (left, high.y)], no_width, no_height),
+                ([(low.x, bottom), (low.x, top)], no_height, no_width),
+            ];
+            let seen = sides.into_iter().filter(|(_, is_none, _)| !is_none);
+            seen.flat_map(|([from, to], _, is_half)| {
+                [
+                    knot(from.0, from.1, Segment::Line),
+                    knot(to.0, to.1, corners(is_half)),
+                ]
+            })
+            .collect()
         }
     };
     if turn > 0.0 {
@@ -695,9 +706,7 @@ fn cubic(ends: &Ends, [c, d]: [Point; 2], own: usize, vertices: &mut Vec<Vertex>
     let count = (bend / (8.0 * TOLERANCE)).sqrt().ceil().clamp(2.0, 200.0);
     let [a, b] = ends.indices;
     for i in 0..count as usize {
-        let t = i as f64 / count;
-        let u = 1.0 - t;
-        let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
+        let weights = weights(i as f64 / count);
         let points = [from, c, d, to].map(Point::to_vec2);
         let at = weights
             .iter()

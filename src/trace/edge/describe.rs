@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::math::{self, Normal, Point, Vec2};
 
 use super::super::contour::Place;
-use super::curve::{Knot, Ring, Segment};
+use super::curve::{Knot, Ring, Segment, angle_between, weights};
 
 /// A place of a contour, and its standard deviation, px.
 #[derive(Debug, Clone, Copy)]
@@ -328,11 +328,6 @@ fn around(
             .map(|&i| (first + places[spans[i].from]) % count)
             .collect(),
     })
-}
-
-/// The angle from one direction to another, rad, −π to π.
-fn angle_between(u: Vec2, v: Vec2) -> f64 {
-    2.0 * math::atan(u.cross(v) / (u.hypot() * v.hypot() + u.dot(v)).max(1e-12))
 }
 
 /// Where two segments meet, and what it costs.
@@ -731,11 +726,8 @@ fn arc(samples: &[Sample], a: usize, b: usize) -> Option<Fitted> {
         .into_iter()
         .chain(inner.iter().map(|s| s.at));
     let along: Vec<Point> = along.chain([end_of(samples, [a, b], 1)]).collect();
-    let steps = along.windows(2).map(|w| {
-        let [u, v] = [w[0] - center, w[1] - center];
-        let (cross, dot) = (u.cross(v), u.dot(v));
-        2.0 * math::atan(cross / (u.hypot() * v.hypot() + dot).max(1e-12))
-    });
+    let steps = along.windows(2);
+    let steps = steps.map(|w| angle_between(w[0] - center, w[1] - center));
     let angle: f64 = steps.sum();
     if !(0.03..5.8).contains(&angle.abs()) {
         return None;
@@ -802,19 +794,10 @@ fn cubic(samples: &[Sample], a: usize, b: usize) -> Option<Fitted> {
         // 3. The place nearest to each sample, by a step of Newton's method.
         chi2 = 0.0;
         for i in inner.clone() {
-            let t = shares[i];
-            let at: Vec2 = weights(t).iter().zip(points).map(|(w, p)| *w * p).sum();
-            let u = 1.0 - t;
-            let slope = 3.0
-                * (u * u * (points[1] - points[0])
-                    + 2.0 * u * t * (points[2] - points[1])
-                    + t * t * (points[3] - points[2]));
-            let away = at - run[i].at.to_vec2();
-            let speed = slope.hypot().max(1e-12);
-            chi2 += run[i].square(away.cross(slope) / speed);
+            let (off, step) = beside(&points, shares[i], run[i].at);
+            chi2 += run[i].square(off);
             if round < ROUNDS - 1 {
-                let step = -away.dot(slope) / (speed * speed);
-                shares[i] = (t + step.clamp(-0.1, 0.1)).clamp(0.0, 1.0);
+                shares[i] = (shares[i] + step.clamp(-0.1, 0.1)).clamp(0.0, 1.0);
             }
         }
         // What is far off now stays so.
@@ -834,16 +817,9 @@ fn cubic(samples: &[Sample], a: usize, b: usize) -> Option<Fitted> {
             .map(|i| {
                 let (mut t, mut off) = (place(i - a), 0.0);
                 for _ in 0..2 {
-                    let at: Vec2 = weights(t).iter().zip(points).map(|(w, p)| *w * p).sum();
-                    let u = 1.0 - t;
-                    let slope = 3.0
-                        * (u * u * (points[1] - points[0])
-                            + 2.0 * u * t * (points[2] - points[1])
-                            + t * t * (points[3] - points[2]));
-                    let away = at - samples[i].at.to_vec2();
-                    let speed = slope.hypot().max(1e-12);
-                    off = away.cross(slope) / speed;
-                    t = (t - away.dot(slope) / (speed * speed)).clamp(0.0, 1.0);
+                    let (away, step) = beside(&points, t, samples[i].at);
+                    off = away;
+                    t = (t + step).clamp(0.0, 1.0);
                 }
                 samples[i].square(off)
             })
@@ -868,10 +844,20 @@ fn cubic(samples: &[Sample], a: usize, b: usize) -> Option<Fitted> {
     })
 }
 
-/// The weights of a cubic's points at share `t`.
-fn weights(t: f64) -> [f64; 4] {
+/// How far a cubic at share `t` is beside a place, and the step of `t` to the place on it that is nearest, by Newton's method.
+fn beside(points: &[Vec2; 4], t: f64, place: Point) -> (f64, f64) {
+    let at: Vec2 = weights(t).iter().zip(points).map(|(w, p)| *w * *p).sum();
     let u = 1.0 - t;
-    [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t]
+    let slope = 3.0
+        * (u * u * (points[1] - points[0])
+            + 2.0 * u * t * (points[2] - points[1])
+            + t * t * (points[3] - points[2]));
+    let away = at - place.to_vec2();
+    let speed = slope.hypot().max(1e-12);
+    (
+        away.cross(slope) / speed,
+        -away.dot(slope) / (speed * speed),
+    )
 }
 
 /// The samples at which segments may meet: corners of a polygon that is within two deviations, and both neighbours of sharp ones.
@@ -883,8 +869,7 @@ fn candidates(samples: &[Sample]) -> Vec<usize> {
         for (k, &i) in corners.iter().enumerate() {
             let [a, b] = [k + corners.len() - 1, k + 1].map(|k| corners[k % corners.len()]);
             let [u, v] = [samples[i].at - samples[a].at, samples[b].at - samples[i].at];
-            let turn = 2.0 * math::atan(u.cross(v) / (u.hypot() * v.hypot() + u.dot(v)).max(1e-12));
-            if turn.abs() > 0.35 {
+            if angle_between(u, v).abs() > 0.35 {
                 found.extend([(i + count - 1) % count, (i + 1) % count]);
             }
         }
@@ -989,7 +974,7 @@ pub(super) mod tests {
         ring(&contour).unwrap()
     }
 
-    fn knot(x: f64, y: f64, segment: Segment, is_smooth: bool) -> Knot {
+    pub(in super::super) fn knot(x: f64, y: f64, segment: Segment, is_smooth: bool) -> Knot {
         Knot {
             at: Point::new(x, y),
             segment,

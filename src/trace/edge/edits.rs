@@ -2,9 +2,9 @@
 //! number.
 
 use super::coverage::{Band, Coverage, Page};
-use super::curve::{Knot, Ring, Segment, directions};
+use super::curve::{Knot, Ring, Segment, arc_middle, directions, weights};
 use super::describe::PRICE;
-use super::refine::{Target, chi2, refined};
+use super::refine::{Target, all, chi2, refined};
 use crate::math::{self, Point, Vec2};
 
 /// Iterations in which an edit settles.
@@ -85,7 +85,7 @@ pub(super) fn improve(ring: &mut Ring, target: &dyn Fn(Band) -> Target, page: Pa
 
 /// Half of χ² of the pixels that each segment touches.
 fn costs(ring: &Ring, target: &dyn Fn(Band) -> Target, page: Page) -> Vec<f64> {
-    let all: Vec<usize> = (0..ring.segments()).collect();
+    let all = all(ring);
     let target = target(Band::of(ring, &all, &[], page));
     let shares = Coverage::of(ring, &target.band).shares();
     let owns = ring.owns();
@@ -93,14 +93,9 @@ fn costs(ring: &Ring, target: &dyn Fn(Band) -> Target, page: Page) -> Vec<f64> {
     let cost = |i: usize| {
         alone.forget();
         alone.add(ring, i, &owns);
-        let mut pixels: Vec<usize> = alone.touched().collect();
-        pixels.sort_unstable();
-        pixels.dedup();
-        let square = |i: usize| {
-            let error = (shares[i] - target.shares[i]) / target.sigmas[i];
-            error * error
-        };
-        0.5 * pixels.into_iter().map(square).sum::<f64>()
+        let errors = alone.touched().into_iter();
+        let errors = errors.map(|pixel| target.error(pixel, shares[pixel]));
+        0.5 * errors.map(|error| error * error).sum::<f64>()
     };
     all.into_iter().map(cost).collect()
 }
@@ -194,11 +189,8 @@ fn longer(knots: &[Knot], i: usize) -> Vec<Edit> {
     match knots[i].segment {
         Segment::Line | Segment::Along(_) => split(from.midpoint(to), [Segment::Arc(1e-3); 2]),
         Segment::Arc(bulge) => {
-            // The sagitta of an arc is half its bulge times the chord.
-            let chord = to - from;
-            let middle = from.midpoint(to) + 0.5 * bulge * Vec2::new(chord.y, -chord.x);
             let half = math::tan(0.5 * math::atan(bulge));
-            split(middle, [Segment::Arc(half); 2]);
+            split(arc_middle(from, to, bulge), [Segment::Arc(half); 2]);
         }
         Segment::Cubic([c, d]) => {
             let m = c.midpoint(d);
@@ -383,9 +375,7 @@ fn bulge_of(from: Point, to: Point, on: Point) -> f64 {
 }
 
 fn cubic_at(points: [Point; 4], t: f64) -> Point {
-    let u = 1.0 - t;
-    let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
-    let sum: Vec2 = weights
+    let sum: Vec2 = weights(t)
         .iter()
         .zip(points)
         .map(|(w, p)| *w * p.to_vec2())

@@ -261,12 +261,10 @@ impl Shares<'_> {
         let target = self.target(whole(ring, &[], self.page));
         let coverage = Coverage::of(ring, &target.band);
         let covered = coverage.shares();
-        let mut pixels: Vec<usize> = coverage.touched().collect();
-        pixels.sort_unstable();
-        pixels.dedup();
-        let misfit = |i: usize| ((covered[i] - target.shares[i]) / target.sigmas[i]).abs();
-        let known = pixels.into_iter().filter(|&i| target.sigmas[i].is_finite());
-        known.map(misfit).collect()
+        let touched = coverage.touched().into_iter();
+        let known = touched.filter(|&pixel| target.sigmas[pixel].is_finite());
+        let misfits = known.map(|pixel| target.error(pixel, covered[pixel]).abs());
+        misfits.collect()
     }
 }
 
@@ -277,19 +275,11 @@ fn whole(ring: &Ring, others: &[&Ring], page: Page) -> Band {
 
 #[cfg(test)]
 mod tests {
-    use super::Point;
     use super::coverage::{Band, Coverage, Page};
-    use super::curve::{Knot, Ring, Segment};
+    use super::curve::{Ring, Segment};
+    use super::describe::tests::knot;
     use super::refine::{Target, all, refined};
     use crate::rng;
-
-    fn knot(x: f64, y: f64, segment: Segment, is_smooth: bool) -> Knot {
-        Knot {
-            at: Point::new(x, y),
-            segment,
-            is_smooth,
-        }
-    }
 
     #[test]
     fn a_shape_is_found_again_from_a_tenth_of_its_pixels_away() {

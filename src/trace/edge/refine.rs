@@ -17,6 +17,13 @@ pub(super) struct Target {
     pub(super) sigmas: Vec<f64>,
 }
 
+impl Target {
+    /// How far a share is from that of a pixel of the band, in units of its deviation.
+    pub(super) fn error(&self, pixel: usize, share: f64) -> f64 {
+        (share - self.shares[pixel]) / self.sigmas[pixel]
+    }
+}
+
 /// Standard deviation of the angle of a smooth joint, rad.
 const ANGLE: f64 = 0.005;
 /// Farthest that a number moves in an iteration, px: farther away the linear model of coverage says nothing.
@@ -120,9 +127,8 @@ impl<'a> Moving<'a> {
 
     /// χ²: the squares of all errors in units of their deviations.
     fn cost(&self, ring: &Ring, shares: &[f64]) -> f64 {
-        let wanted = self.target.shares.iter().zip(&self.target.sigmas);
-        let errors = shares.iter().zip(wanted);
-        let errors = errors.map(|(share, (wanted, sigma))| (share - wanted) / sigma);
+        let errors = shares.iter().enumerate();
+        let errors = errors.map(|(pixel, share)| self.target.error(pixel, *share));
         let angles = self.joints.iter().map(|&i| ring.angle(i) / ANGLE);
         errors.chain(angles).map(|error| error * error).sum()
     }
@@ -169,10 +175,7 @@ impl<'a> Moving<'a> {
                     .enumerate()
                     .filter(|term| term.1 != 0.0),
             );
-            add(
-                &terms,
-                (target.shares[pixel] - shares[pixel]) / target.sigmas[pixel],
-            );
+            add(&terms, -target.error(pixel, shares[pixel]));
         }
         // 2. Smooth joints.
         let owns = ring.owns();

@@ -20,8 +20,8 @@ const ENDING: f64 = 1.5;
 /// Fewest samples between two gaps; fewer are hidden, too. A guess.
 const FEWEST: usize = 3;
 
-/// The samples along a contour of a field, and the places of its gaps. `doubt` is the standard deviation of a share, and `depth` tells
-/// how far an outline may lie beyond a place in a direction, as it is hidden there.
+/// The samples along a contour of a field, and the places of its gaps. `doubt` is the standard deviation of a share, and `is_hidden`
+/// tells where an outline would not be seen.
 pub(super) fn samples(
     field: &Field,
     contour: &[Place],

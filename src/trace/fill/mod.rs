@@ -63,8 +63,6 @@ pub(super) struct Flat<'a> {
     translucent: Translucent,
     stack: Stack,
     pub(super) tracing: Tracing,
-    /// How far the pixels of each region are from its colour, in the mean of squares.
-    spreads: Vec<f64>,
 }
 
 /// The share of the pixels that has to be flat, or there are no filled shapes. Drawings of filled shapes have 0.69 to 0.99,
@@ -86,7 +84,7 @@ const LEAST_EXPLAINED: f32 = 0.9;
 const HIDDEN: f32 = 32.0;
 /// Most pixel edges between areas that are placed where they are seen: of longer outlines, descents take less time. Blobs of noise of
 /// 2,000 px take 112 s without this bound, and 41 s with it.
-const MOST_EDGES: usize = 6_000;
+const MOST_EDGES: u32 = 6_000;
 /// Share of a place that what lies on top covers from which on an edge is hidden there. A guess.
 const COVERED: f32 = 0.9;
 
@@ -124,7 +122,7 @@ impl<'a> Flat<'a> {
         };
         let drawn: Vec<bool> = regions.list.iter().zip(0..).map(is_drawn).collect();
         let stack = Stack::of(&regions, &neighbours, &drawn, &translucent);
-        let mut flat = Self {
+        Some(Self {
             pixels,
             mattes,
             regions,
@@ -132,10 +130,7 @@ impl<'a> Flat<'a> {
             translucent,
             stack,
             tracing,
-            spreads: Vec::new(),
-        };
-        flat.spreads = flat.spreads();
-        Some(flat)
+        })
     }
 
     /// The shapes of the stack, from back to front.
@@ -152,11 +147,25 @@ impl<'a> Flat<'a> {
         let fills = fills
             .into_iter()
             .filter(|fill| !left_out[fill.region as usize]);
-        let joined = compound::joined(fills.collect(), &self.neighbours, |fill| {
+        self.painted(&self.joined(fills.collect()), |rings| vec![rings.to_vec()])
+    }
+
+    /// Shapes, those of one colour joined.
+    fn joined<R>(&self, fills: Vec<Fill<R>>) -> Vec<Fill<R>> {
+        compound::joined(fills, &self.neighbours, |fill| {
             self.part(fill.region) != Part::Whole
-        });
-        let filled = joined.iter().flat_map(|fill| {
-            self.area_of(fill).map(|area| Filled {
+        })
+    }
+
+    /// The areas of shapes, whose rings make some elements, each of some paths.
+    fn painted<R>(
+        &self,
+        fills: &[Fill<R>],
+        mut elements: impl FnMut(&[R]) -> Vec<Vec<Path>>,
+    ) -> Vec<Filled> {
+        let filled = fills.iter().flat_map(|fill| {
+            let paths = elements(&fill.rings);
+            self.areas_of(fill, paths).map(|area| Filled {
                 area,
                 gain: fill.gain / self.mattes as f32,
                 rank: fill.rank,
@@ -210,45 +219,34 @@ impl<'a> Flat<'a> {
 
     /// The areas of all layers where their edges are seen, back to front; `None` where colours do not tell that.
     pub(super) fn placed(&self) -> Option<Vec<Filled>> {
-        let Regions {
-            width, height, of, ..
-        } = &self.regions;
-        let beside = |i: usize| (i % width + 1 < *width).then_some(i + 1);
-        let below = |i: usize| (i / width + 1 < *height).then_some(i + width);
-        let edges = (0..of.len()).flat_map(|i| {
-            let next = beside(i).into_iter().chain(below(i));
-            next.filter(move |&next| of[i] != of[next])
-        });
-        if edges.count() > MOST_EDGES {
+        let touching = self.neighbours.iter().flat_map(BTreeMap::values);
+        // Each pair of pixels counts for both of its regions.
+        if touching.sum::<u32>() > 2 * MOST_EDGES {
             return None;
         }
+        let spreads = self.spreads();
         let gains = self.gains();
         let layers = self.stack.layers.par_iter();
         let fills: Option<Vec<Option<Fill<Ring>>>> = layers
-            .map(|layer| self.placed_fill(layer, &gains))
+            .map(|layer| self.placed_fill(layer, &gains, &spreads))
             .collect();
         let fills: Vec<Fill<Ring>> = fills?.into_iter().flatten().collect();
-        let joined = compound::joined(fills, &self.neighbours, |fill| {
-            self.part(fill.region) != Part::Whole
-        });
+        let joined = self.joined(fills);
         let is_only = joined.len() == 1;
         let mut room = self.tracing.most.saturating_sub(joined.len());
-        let filled = joined.iter().flat_map(|fill| {
-            let paths = compound::paths(&fill.rings, is_only, &mut room);
-            self.areas_of(fill, paths).map(|area| Filled {
-                area,
-                gain: fill.gain / self.mattes as f32,
-                rank: fill.rank,
-            })
-        });
-        Some(filled.collect())
+        Some(self.painted(&joined, |rings| compound::paths(rings, is_only, &mut room)))
     }
 
     /// The shape of a layer by its edges; `None` where colours do not tell where they are.
-    fn placed_fill(&self, layer: &Layer, gains: &[f32]) -> Option<Option<Fill<Ring>>> {
+    fn placed_fill(
+        &self,
+        layer: &Layer,
+        gains: &[f32],
+        spreads: &[f64],
+    ) -> Option<Option<Fill<Ring>>> {
         let (width, height) = (self.regions.width, self.regions.height);
         let (field, mut free) = self.seen_of(layer);
-        let doubts = self.doubts(layer, &field, &free);
+        let doubts = self.doubts(layer, (&field, &free), spreads);
         // How far an outline goes on beneath others is a matter of how renderers mix them, so that descents find it.
         if self.is_partly_hidden(&field, &doubts) {
             return None;
@@ -286,11 +284,7 @@ impl<'a> Flat<'a> {
     /// The shares of pixels that a layer covers, and for each region whether it hides the layer's outline.
     fn seen_of(&self, layer: &Layer) -> (Field, Vec<bool>) {
         let regions = &self.regions;
-        let mut covered = vec![false; regions.list.len()];
-        layer
-            .covers
-            .iter()
-            .for_each(|&r| covered[r as usize] = true);
+        let covered = self.members(&layer.covers);
         // The outline is free below regions that lie on top, except where both are translucent and it would be seen.
         let is_free = |r: u32| {
             let is_above = self.rank(r).is_some_and(|rank| rank > layer.rank);
@@ -317,7 +311,7 @@ impl<'a> Flat<'a> {
     }
 
     /// The standard deviation of the share of each pixel of a field; infinite where what is `free` hides it.
-    fn doubts(&self, layer: &Layer, field: &Field, free: &[bool]) -> Vec<f64> {
+    fn doubts(&self, layer: &Layer, (field, free): (&Field, &[bool]), spreads: &[f64]) -> Vec<f64> {
         let regions = &self.regions;
         let is_hiding = |r: u32| free[r as usize] && r != layer.region;
         let doubt = |k: usize| {
@@ -340,7 +334,7 @@ impl<'a> Flat<'a> {
             };
             let others = others.into_iter().map(|other| {
                 let contrast = f64::from(away(&self.shown(own, i), &self.shown(other, i)));
-                let spread = |r: u32| self.spreads[r as usize];
+                let spread = |r: u32| spreads[r as usize];
                 (contrast, spread(own).max(spread(other)))
             });
             let (contrast, spread) = others
