@@ -9,13 +9,14 @@ use rayon::prelude::*;
 
 use super::Traced;
 use super::areas::Pixels;
+use super::edge::{Middle, Ring};
 use super::even::{Pen, Shape, WAVERING};
-use super::fill::{Fill, Flat};
+use super::fill::{Fill, Filled, Flat};
 use super::gain::coverage;
 use super::parts::{COVERED, Part};
 use super::strokes::TracedStroke;
 use crate::math::{self, distance};
-use crate::scene::{self, Area, Mark, Stroke, polyline};
+use crate::scene::{self, Area, Cap, Mark, Stroke, polyline};
 
 /// Strokes and regions that share pixels.
 #[derive(Debug, Default)]
@@ -30,96 +31,302 @@ const MOST_PRICE: f32 = 4.0;
 /// The regions under a stroke, with the pixels of each that it covers.
 type Votes = BTreeMap<u32, f32>;
 
-/// The marks that draw a picture, in painting order; or lines that came apart from blobs although
-/// strokes do not draw them, each as its shape and its region.
-pub(super) fn chosen(
-    flat: &Flat<'_>,
-    fills: Vec<Fill>,
-    mut strokes: Vec<TracedStroke>,
-    pixels: &Pixels<'_>,
-    price: &(impl Fn(&Mark) -> f32 + Sync),
-) -> Result<Vec<Traced>, Vec<(u32, u32)>> {
-    let traced = strokes.clone();
-    let votes: Vec<Votes> = strokes
-        .par_iter()
-        .map(|traced| votes(traced, flat, pixels))
-        .collect();
-    let groups = groups(&votes, flat.region_count());
-    let wins = |group: &Group| stroked(group, flat, &fills, &strokes, pixels, price);
-    let pens: Vec<Option<Vec<Pen>>> = groups.par_iter().map(wins).collect();
-    let won = pens.iter().map(Option::is_some).collect();
-    let mut won = unjoined(won, &groups, flat, &fills, &strokes);
-    let undrawn = undrawn(&groups, &won, flat);
-    if !undrawn.is_empty() {
-        return Err(undrawn);
+/// Strokes and areas of which a picture may be drawn.
+pub(super) struct Choice<'a> {
+    flat: &'a Flat<'a>,
+    strokes: Vec<TracedStroke>,
+    pixels: &'a Pixels<'a>,
+    votes: Vec<Votes>,
+    groups: Vec<Group>,
+}
+
+/// What draws a picture.
+struct Chosen {
+    /// The regions that strokes draw.
+    is_stroked: Vec<bool>,
+    /// For each stroke, if it is drawn, that, its place in the stack and what it gains.
+    strokes: Vec<Option<(Stroke, usize, f32)>>,
+}
+
+impl<'a> Choice<'a> {
+    pub(super) fn of(
+        flat: &'a Flat<'a>,
+        strokes: Vec<TracedStroke>,
+        pixels: &'a Pixels<'a>,
+    ) -> Self {
+        let votes: Vec<Votes> = strokes
+            .par_iter()
+            .map(|traced| votes(traced, flat, pixels))
+            .collect();
+        let groups = groups(&votes, flat.region_count());
+        Self {
+            flat,
+            strokes,
+            pixels,
+            votes,
+            groups,
+        }
     }
-    // The regions that strokes draw need no area.
-    let mut is_stroked = vec![false; flat.region_count()];
-    for region in crossed(&groups, &won, flat, &strokes, pixels) {
-        is_stroked[region as usize] = true;
-        let own = groups
+
+    /// The marks that draw the picture, in painting order, to be fitted; or lines that came apart from blobs although strokes do not
+    /// draw them, each as its shape and its region.
+    pub(super) fn fitted(
+        &self,
+        fills: Vec<Fill>,
+        price: &(impl Fn(&Mark) -> f32 + Sync),
+    ) -> Result<Vec<Traced>, Vec<(u32, u32)>> {
+        let Self { flat, strokes, .. } = self;
+        let wins = |group: &Group| stroked(group, flat, &fills, strokes, self.pixels, price);
+        let pens: Vec<Option<Vec<Pen>>> = self.groups.par_iter().map(wins).collect();
+        let has_bands = pens
             .iter()
-            .zip(&mut won)
-            .filter(|(group, _)| group.regions == [region]);
-        own.for_each(|(_, won)| *won = false);
+            .flatten()
+            .flatten()
+            .any(|pen| pen.band.is_some());
+        let drawn = self.groups.iter().zip(pens).map(|(group, pens)| {
+            let strokes = group.strokes.iter().map(|&i| &strokes[i].stroke);
+            Some(
+                strokes
+                    .zip(pens?)
+                    .map(|(stroke, pen)| drawn_by(pen, stroke))
+                    .collect(),
+            )
+        });
+        let drawn: Vec<Option<Vec<Stroke>>> = drawn.collect();
+        let won = drawn.iter().map(Option::is_some).collect();
+        let won = unjoined(won, &self.groups, flat, &fills, strokes);
+        let chosen = self.chosen(&fills, drawn, won, price)?;
+        let areas = flat.areas(fills, &chosen.is_stroked);
+        // A drawing of lines is one of strokes as they were traced.
+        if areas.is_empty() && !has_bands {
+            return Ok(strokes.iter().cloned().map(Traced::from).collect());
+        }
+        Ok(stacked(chosen.strokes, areas, false))
     }
-    let mut places: Vec<Option<(usize, f32)>> = vec![None; strokes.len()];
-    let gains: BTreeMap<u32, f32> = fills.iter().map(|fill| (fill.region, fill.gain)).collect();
-    let mut bands: Vec<Option<Stroke>> = vec![None; strokes.len()];
-    let drawn = groups.iter().zip(pens).zip(&won).filter(|(_, won)| **won);
-    for ((group, pens), _) in drawn {
-        let regions = group.regions.iter();
-        regions.for_each(|&region| is_stroked[region as usize] = true);
-        for (&i, pen) in group.strokes.iter().zip(pens.into_iter().flatten()) {
-            let rank = rank(&strokes[i], &votes[i], flat, pixels);
-            // On top of an area it gains what its regions do.
-            let contribution = votes[i].iter().map(|(region, votes)| {
-                let gain = gains.get(region).copied().unwrap_or_default();
-                gain * (votes / flat.size(*region)).min(1.0) / flat.mattes as f32
-            });
-            places[i] = Some((rank, contribution.sum::<f32>().max(strokes[i].gain)));
-            // A width that was taken for that on the canvas.
-            let own = &mut strokes[i].stroke.radius;
-            if (*own - f64::from(pen.radius)).abs() > WRONG {
-                *own = pen.radius.into();
+
+    /// The marks that draw the picture where their edges are seen, in painting order; `None` where colours do not tell where that is.
+    pub(super) fn placed(&self, price: &(impl Fn(&Mark) -> f32 + Sync)) -> Option<Vec<Traced>> {
+        // Where lines join blobs of their colour is no edge, so that descents find it.
+        if self.flat.is_apart() {
+            return None;
+        }
+        let fills = self.flat.placed_fills()?;
+        let lines = |group: &Group| self.lines(group, &fills);
+        let lines: Vec<Option<Vec<Stroke>>> = self.groups.par_iter().map(lines).collect();
+        let mut lines = lines;
+        self.keep_pens(&mut lines, &fills);
+        let won = lines.iter().map(Option::is_some).collect();
+        let chosen = self.chosen(&fills, lines, won, price).ok()?;
+        // Strokes that no region tells are to be fitted.
+        let is_unplaced =
+            |(votes, stroke): (&Votes, &Option<_>)| votes.is_empty() && stroke.is_some();
+        if self.votes.iter().zip(&chosen.strokes).any(is_unplaced) {
+            return None;
+        }
+        let count = chosen.strokes.iter().flatten().count();
+        let areas = self.flat.placed_areas(&fills, &chosen.is_stroked, count)?;
+        Some(stacked(chosen.strokes, areas, true)).filter(|marks| !marks.is_empty())
+    }
+
+    /// What draws the picture, if these strokes draw groups; or lines that came apart from blobs although strokes do not draw them.
+    fn chosen<R>(
+        &self,
+        fills: &[Fill<R>],
+        drawn: Vec<Option<Vec<Stroke>>>,
+        mut won: Vec<bool>,
+        price: &(impl Fn(&Mark) -> f32 + Sync),
+    ) -> Result<Chosen, Vec<(u32, u32)>> {
+        let Self {
+            flat,
+            strokes,
+            pixels,
+            votes,
+            groups,
+        } = self;
+        let undrawn = undrawn(groups, &won, flat);
+        if !undrawn.is_empty() {
+            return Err(undrawn);
+        }
+        // The regions that strokes draw need no area.
+        let mut is_stroked = vec![false; flat.region_count()];
+        for region in crossed(groups, &won, flat, strokes, pixels) {
+            is_stroked[region as usize] = true;
+            let own = groups
+                .iter()
+                .zip(&mut won)
+                .filter(|(group, _)| group.regions == [region]);
+            own.for_each(|(_, won)| *won = false);
+        }
+        let mut places = vec![None; strokes.len()];
+        let gains: BTreeMap<u32, f32> = fills.iter().map(|fill| (fill.region, fill.gain)).collect();
+        let drawn = groups.iter().zip(drawn).zip(&won).filter(|(_, won)| **won);
+        for ((group, drawn), _) in drawn {
+            let regions = group.regions.iter();
+            regions.for_each(|&region| is_stroked[region as usize] = true);
+            for (&i, stroke) in group.strokes.iter().zip(drawn.into_iter().flatten()) {
+                let rank = rank(&strokes[i], &votes[i], flat, pixels);
+                // On top of an area it gains what its regions do.
+                let contribution = votes[i].iter().map(|(region, votes)| {
+                    let gain = gains.get(region).copied().unwrap_or_default();
+                    gain * (votes / flat.size(*region)).min(1.0) / flat.mattes as f32
+                });
+                let gain = contribution.sum::<f32>().max(strokes[i].gain);
+                places[i] = Some((stroke, rank, gain));
             }
-            bands[i] = pen.band.map(|band| band.stroke(&strokes[i].stroke));
         }
-    }
-    let grouped = votes.iter().map(|votes| !votes.is_empty());
-    let orphans: Vec<usize> = grouped
-        .enumerate()
-        .filter(|(_, g)| !g)
-        .map(|(i, _)| i)
-        .collect();
-    for i in orphans {
-        let stroke = &strokes[i].stroke;
-        let gain = flat.gain_on_top((stroke.color, stroke.opacity), &coverage_of(stroke, pixels));
-        if gain > price(&stroke.clone().into()) {
-            places[i] = Some((usize::MAX, gain));
+        // What no region has a part of lies on top.
+        let orphans = (0..strokes.len()).filter(|&i| votes[i].is_empty());
+        for i in orphans {
+            let stroke = &strokes[i].stroke;
+            let covered = coverage_of(stroke, pixels);
+            let gain = flat.gain_on_top((stroke.color, stroke.opacity), &covered);
+            if gain > price(&stroke.clone().into()) {
+                places[i] = Some((stroke.clone(), usize::MAX, gain));
+            }
         }
+        Ok(Chosen {
+            is_stroked,
+            strokes: places,
+        })
     }
-    let areas = flat.areas(fills, &is_stroked);
-    // A drawing of lines is one of strokes as they were traced.
-    if areas.is_empty() && bands.iter().all(Option::is_none) {
-        return Ok(traced.into_iter().map(Traced::from).collect());
-    }
-    // Strokes keep their order among each other, as far as areas lie not between.
-    let mut found: Vec<(usize, Traced)> = Vec::new();
-    for ((traced, place), band) in strokes.into_iter().zip(places).zip(bands) {
-        let Some((rank, gain)) = place else {
-            continue;
+
+    /// The strokes of a group as lines of one width, if these have a shorter description than its regions.
+    fn lines(&self, group: &Group, fills: &[Fill<Ring>]) -> Option<Vec<Stroke>> {
+        let strokes = group.strokes.iter().map(|&i| &self.strokes[i].stroke);
+        let strokes: Vec<&Stroke> = strokes.collect();
+        if darken(&strokes, self.pixels) {
+            return None;
+        }
+        let own = fills
+            .iter()
+            .filter(|fill| group.regions.contains(&fill.region));
+        let own: Vec<&Fill<Ring>> = own.collect();
+        let middle = |stroke: &&Stroke| {
+            let mut places = stroke.path.flattened(FLAT);
+            if stroke.path.is_closed() {
+                places.extend(places.first().copied());
+            }
+            Middle {
+                places,
+                is_closed: stroke.path.is_closed(),
+                radius: stroke.radius,
+            }
         };
-        let mark = band.unwrap_or(traced.stroke).into();
-        let place = areas.iter().filter(|area| area.rank < rank).count();
-        found.push((2 * place, Traced::of(mark, gain)));
+        let middles: Vec<Middle> = strokes.iter().map(middle).collect();
+        let lines = self.flat.lines(&own, &middles)?.into_iter();
+        let drawn = lines.zip(&strokes).map(|(line, stroke)| Stroke {
+            path: line.path(),
+            radius: line.radius(),
+            cap: line.cap(),
+            ..(*stroke).clone()
+        });
+        Some(drawn.collect())
     }
+
+    /// Forgets lines that are things rather than lines: a disc and a bar have as many numbers. A long line tells a pen, which draws
+    /// others as wide, and has one width.
+    fn keep_pens(&self, lines: &mut [Option<Vec<Stroke>>], fills: &[Fill<Ring>]) {
+        let is_long = |strokes: &Vec<Stroke>| {
+            let lengths = strokes.iter().map(length);
+            lengths.sum::<f32>() >= SHORT * strokes.len() as f32
+        };
+        // 1. The widths of long lines, wider ones first.
+        let long = lines.iter().flatten().filter(|strokes| is_long(strokes));
+        let mut pens: Vec<[f64; 2]> = long
+            .flatten()
+            .map(|stroke| [stroke.radius, stroke.radius * f64::from(length(stroke))])
+            .collect();
+        pens.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        let pens: Vec<f64> = pens
+            .chunk_by(|a, b| a[0] - b[0] < ONE_PEN * a[0])
+            .map(|pen| {
+                let all: f64 = pen.iter().map(|[_, length]| length).sum();
+                pen.iter()
+                    .map(|[radius, length]| radius * length / all)
+                    .sum()
+            })
+            .collect();
+        let pen_of = |stroke: &Stroke| {
+            let away = |pen: &&f64| (*pen - stroke.radius).abs();
+            let nearest = pens.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+            nearest.filter(|pen| away(pen) < ONE_PEN * **pen).copied()
+        };
+        // 2. Lines of these; and others of some length, if no area has their colour.
+        let is_stroked = |region: u32| {
+            let mut groups = self
+                .groups
+                .iter()
+                .zip(&*lines)
+                .filter(|(_, lines)| lines.is_some());
+            groups.any(|(group, _)| group.regions.contains(&region))
+        };
+        let areas = fills.iter().filter(|fill| !is_stroked(fill.region));
+        let labels: BTreeSet<u16> = areas.map(|fill| self.flat.label(fill.region)).collect();
+        for (group, lines) in self.groups.iter().zip(lines) {
+            let Some(strokes) = lines else { continue };
+            let least = |stroke: &Stroke| match stroke.cap {
+                Cap::Round => LINE,
+                Cap::Butt => LONG,
+            };
+            let mut labels_of = group.regions.iter().map(|&region| self.flat.label(region));
+            let is_alone = labels_of.all(|label| !labels.contains(&label));
+            let is_line =
+                |stroke: &Stroke| stroke.path.is_closed() || length(stroke) >= least(stroke);
+            let are_lines = is_long(strokes) || (is_alone && strokes.iter().all(is_line));
+            match strokes.iter().all(|stroke| pen_of(stroke).is_some()) {
+                true => strokes.iter_mut().for_each(|stroke| {
+                    stroke.radius = pen_of(stroke).unwrap_or(stroke.radius);
+                }),
+                false if !are_lines => *lines = None,
+                false => {}
+            }
+        }
+    }
+}
+
+/// Widths that differ by a smaller share are those of one pen. A guess.
+const ONE_PEN: f64 = 0.04;
+
+/// Farthest that the places along a middle are from it, px.
+const FLAT: f64 = 0.05;
+
+/// The stroke that a pen draws along the path of one that was traced.
+fn drawn_by(pen: Pen, traced: &Stroke) -> Stroke {
+    // A width that was taken for that on the canvas.
+    let is_wrong = (traced.radius - f64::from(pen.radius)).abs() > WRONG;
+    let stroke = Stroke {
+        radius: if is_wrong {
+            pen.radius.into()
+        } else {
+            traced.radius
+        },
+        ..traced.clone()
+    };
+    pen.band
+        .map_or_else(|| stroke.clone(), |band| band.stroke(&stroke))
+}
+
+/// Strokes and areas, in painting order. Strokes keep their order among each other, as far as areas lie not between.
+fn stacked(
+    strokes: Vec<Option<(Stroke, usize, f32)>>,
+    areas: Vec<Filled>,
+    is_placed: bool,
+) -> Vec<Traced> {
+    let traced = |mark: Mark, gain: f32| Traced {
+        mark,
+        gain,
+        is_placed,
+    };
+    let strokes = strokes.into_iter().flatten().map(|(stroke, rank, gain)| {
+        let place = areas.iter().filter(|area| area.rank < rank).count();
+        (2 * place, traced(stroke.into(), gain))
+    });
+    let mut found: Vec<(usize, Traced)> = strokes.collect();
     for (place, area) in areas.into_iter().enumerate() {
-        let (mark, gain) = (area.area.into(), area.gain);
-        found.push((2 * place + 1, Traced::of(mark, gain)));
+        found.push((2 * place + 1, traced(area.area.into(), area.gain)));
     }
     found.sort_by_key(|(place, _)| *place);
-    Ok(found.into_iter().map(|(_, traced)| traced).collect())
+    found.into_iter().map(|(_, traced)| traced).collect()
 }
 
 /// The lines that came apart from blobs and are not drawn by strokes: shapes and regions.
@@ -244,11 +451,11 @@ fn groups(votes: &[Votes], regions: usize) -> Vec<Group> {
 }
 
 /// Groups that strokes draw, short ones beside areas of their colour left out: those join the areas and are no marks.
-fn unjoined(
+fn unjoined<R>(
     mut won: Vec<bool>,
     groups: &[Group],
     flat: &Flat<'_>,
-    fills: &[Fill],
+    fills: &[Fill<R>],
     strokes: &[TracedStroke],
 ) -> Vec<bool> {
     let mut is_stroked = vec![false; flat.region_count()];

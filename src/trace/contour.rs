@@ -67,7 +67,7 @@ impl Field {
     }
 
     /// The field between pixel centres.
-    fn at(&self, p: Place) -> f32 {
+    pub(super) fn at(&self, p: Place) -> f32 {
         let at = [0, 1].map(|k| p[k] - 0.5 - self.origin[k] as f32);
         let height = self.values.len() / self.width;
         between(at, [self.width, height], |i| self.values[i])

@@ -44,6 +44,7 @@ use crate::image::Image;
 use crate::scene::{Mark, Marks, Path};
 use crate::seed::Residual;
 use areas::{Areas, Pixels, Planes};
+use choice::Choice;
 use fill::Flat;
 pub(crate) use halves::Halves;
 use parts::Parts;
@@ -114,9 +115,12 @@ fn marks_of(
         let Some(flat) = flat else {
             return strokes.into_iter().map(Traced::from).collect();
         };
-        let fills = flat.fills();
-        match choice::chosen(&flat, fills, strokes, pixels, &price) {
-            Ok(traced) => return placed(&flat, &traced).unwrap_or(traced),
+        let choice = Choice::of(&flat, strokes, pixels);
+        match choice.fitted(flat.fills(), &price) {
+            Ok(traced) => {
+                let placed = tracing.may_place.then(|| choice.placed(&price));
+                return placed.flatten().unwrap_or(traced);
+            }
             // What strokes do not draw stays with what it came apart from.
             Err(lines) => {
                 let pixels = |line| flat.pixels_of(line).collect();
@@ -126,19 +130,6 @@ fn marks_of(
             }
         }
     }
-}
-
-/// The same areas as those that were traced where their edges are seen, if there are no strokes and colours tell where that is.
-fn placed(flat: &Flat<'_>, traced: &[Traced]) -> Option<Vec<Traced>> {
-    let are_areas = traced.iter().all(|traced| traced.mark.as_area().is_some());
-    let areas = flat.tracing.may_place && are_areas && !traced.is_empty();
-    let areas = areas.then(|| flat.placed()).flatten()?;
-    let placed = areas.into_iter().map(|filled| Traced {
-        mark: filled.area.into(),
-        gain: filled.gain,
-        is_placed: true,
-    });
-    Some(placed.collect())
 }
 
 /// The lines of a picture on its canvas that lie between two rows of pixels, if crossings tell that there are such.

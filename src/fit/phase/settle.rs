@@ -37,6 +37,9 @@ const PACE: f32 = 0.02;
 const AREA_RATE: f32 = 0.6;
 /// Additional factor on the rates of colours and opacities, as the strokes hardly move. Half, twice: −0.03, −0.03 dB.
 const COLOR_RATE: f32 = 5.0;
+/// Side of a picture from which on marks that are where they were seen may have fewer decimals, px. Of 41 drawings at 128 px that
+/// would save 5 % of the bytes for 3 % more of colour error, of 63 at 512 px 8 % for 5 %.
+const LARGE: usize = 400;
 /// Distance that strokes move in a round, in units of the round before. How resvg antialiases an edge depends on the
 /// position of the edge, so that a correction holds only for edges that stay where they are. Half, twice: −0.03, +0.01 dB.
 const NEXT_PACE: f32 = 0.1;
@@ -58,9 +61,16 @@ pub(in crate::fit) fn settle(session: &mut Session<'_>) -> Result<Outcome> {
 fn run(session: &mut Session<'_>) -> Result<RenderedFile> {
     session.progress.settle();
     let mut file = session.render_file()?;
-    // Areas are where they were traced.
-    if !allows_round(session, 0) || session.drawing.is_placed() {
+    if !allows_round(session, 0) {
         return Ok(file);
+    }
+    // Marks are where they were traced. In a small picture tenths of a px are seen once it is enlarged.
+    if session.drawing.is_placed() {
+        let page = session.drawing.surfaces[0].picture();
+        return match page.width().max(page.height()) < LARGE {
+            true => Ok(file),
+            false => with_fewer_decimals(session, file),
+        };
     }
     let rates = session.restricted_rates();
     // Rounds may make the file worse, so the best one is kept with the drawing that it was written from.

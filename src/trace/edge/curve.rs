@@ -1,54 +1,16 @@
-//! Rings of lines, circular arcs and cubics, as functions of few numbers.
+//! Rings of segments, shapes and lines, as functions of few numbers.
 //!
 //! A ring is a list of vertices with a segment behind each. The *unknowns* of a ring are its numbers in the order of
 //! [`Ring::unknowns`]: the vertices, then the bulge of each arc and the control points of each cubic; a shape has those of its element.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use super::line::Line;
+use super::segment::{
+    Knot, Segment, TOLERANCE, Vertex, path_of, polyline, set_values, turn, turned, values_of,
+};
 use crate::math::{self, Point, Vec2};
-use crate::scene::{Path, PathPoint, Shape};
-
-/// A segment between two vertices.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::trace) enum Segment {
-    Line,
-    /// A line along an axis, 0 if it is level and 1 if it is upright: its ends have one place across.
-    Along(usize),
-    /// An arc with this bulge, tan(angle/4), positive if it turns to the right, seen with y pointing down.
-    ///
-    /// The bulge is regular where the arc becomes a line, where radius and centre are not.
-    Arc(f64),
-    Cubic([Point; 2]),
-}
-
-impl Segment {
-    /// Number of unknowns besides the vertices.
-    pub(super) fn unknowns(&self) -> usize {
-        match self {
-            Self::Line | Self::Along(_) => 0,
-            Self::Arc(_) => 1,
-            Self::Cubic(_) => 4,
-        }
-    }
-}
-
-/// A vertex and the segment behind it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::trace) struct Knot {
-    pub(super) at: Point,
-    pub(super) segment: Segment,
-    /// True if the segment before the vertex goes on in the direction of the one behind it.
-    pub(super) is_smooth: bool,
-}
-
-impl Knot {
-    /// The numbers that it adds to a ring.
-    pub(super) fn freedom(&self) -> usize {
-        let spared =
-            usize::from(self.is_smooth) + usize::from(matches!(self.segment, Segment::Along(_)));
-        2 + self.segment.unknowns() - spared
-    }
-}
+use crate::scene::{Path, Shape};
 
 /// A closed outline.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,38 +23,9 @@ pub(in crate::trace) enum Ring {
     },
     /// Vertices with segments.
     Knots(Vec<Knot>),
+    /// What a line of one width covers.
+    Line(Line),
 }
-
-/// A vertex of the polyline that replaces a ring, with its derivatives by some unknowns of the ring: their index, and the change of
-/// x and y.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Vertex {
-    pub(super) at: Point,
-    slopes: [(u32, Vec2); 8],
-    count: u8,
-}
-
-impl Vertex {
-    fn new(at: Point, list: &[(usize, Vec2)]) -> Self {
-        let mut slopes = [(0, Vec2::ZERO); 8];
-        for (slot, &(unknown, slope)) in slopes.iter_mut().zip(list) {
-            *slot = (unknown as u32, slope);
-        }
-        Self {
-            at,
-            slopes,
-            count: list.len().min(8) as u8,
-        }
-    }
-
-    /// Its derivatives by some unknowns of the ring: their index, and the change of x and y.
-    pub(super) fn slopes(&self) -> &[(u32, Vec2)] {
-        &self.slopes[..self.count.into()]
-    }
-}
-
-/// Farthest that the polyline of a ring is from it, px.
-const TOLERANCE: f64 = 0.004;
 
 impl Ring {
     /// The number of unknowns.
@@ -103,6 +36,7 @@ impl Ring {
                 let own: usize = knots.iter().map(|knot| knot.segment.unknowns()).sum();
                 2 * knots.len() + own
             }
+            Self::Line(line) => line.radius_index() + 1,
         }
     }
 
@@ -110,15 +44,10 @@ impl Ring {
     pub(super) fn values(&self) -> Vec<f64> {
         match self {
             Self::Shape { shape, .. } => numbers(shape),
-            Self::Knots(knots) => {
-                let mut values: Vec<f64> = knots.iter().flat_map(|k| [k.at.x, k.at.y]).collect();
-                for knot in knots {
-                    match knot.segment {
-                        Segment::Line | Segment::Along(_) => {}
-                        Segment::Arc(bulge) => values.push(bulge),
-                        Segment::Cubic([a, b]) => values.extend([a.x, a.y, b.x, b.y]),
-                    }
-                }
+            Self::Knots(knots) => values_of(knots, knots.len()),
+            Self::Line(line) => {
+                let mut values = values_of(&line.knots, line.segments());
+                values.push(line.radius);
                 values
             }
         }
@@ -129,20 +58,10 @@ impl Ring {
         let mut ring = self.clone();
         match &mut ring {
             Self::Shape { shape, .. } => *shape = with_numbers(shape, values),
-            Self::Knots(knots) => {
-                let (places, mut rest) = values.split_at(2 * knots.len());
-                for (knot, at) in knots.iter_mut().zip(places.chunks(2)) {
-                    knot.at = Point::new(at[0], at[1]);
-                    let (own, others) = rest.split_at(knot.segment.unknowns());
-                    match &mut knot.segment {
-                        Segment::Line | Segment::Along(_) => {}
-                        Segment::Arc(bulge) => *bulge = own[0],
-                        Segment::Cubic(controls) => {
-                            *controls = [Point::new(own[0], own[1]), Point::new(own[2], own[3])];
-                        }
-                    }
-                    rest = others;
-                }
+            Self::Knots(knots) => set_values(knots, values),
+            Self::Line(line) => {
+                set_values(&mut line.knots, values);
+                line.radius = values[values.len() - 1].max(LEAST_RADIUS);
             }
         }
         ring
@@ -151,37 +70,26 @@ impl Ring {
     /// The ring as a path; one that is `alone` may be an element of its own. Arcs of up to 100° are cubics, which have fewer numbers
     /// and are as near as 0.0003 of the radius.
     pub(in crate::trace) fn path(&self, is_alone: bool) -> Path {
-        const LONG: f64 = 0.467;
         let knots = match self {
             Self::Shape { shape, .. } if is_alone => return with_radius(shape).path(),
             Self::Shape { shape, turn } => &knots(shape, *turn),
             Self::Knots(knots) => knots,
+            Self::Line(line) => return path_of(&line.knots, line.is_closed),
         };
-        let mut points = Vec::new();
-        for (i, knot) in knots.iter().enumerate() {
-            let to = knots[(i + 1) % knots.len()].at;
-            points.push(PathPoint::on(knot.at));
-            match knot.segment {
-                Segment::Line | Segment::Along(_) => {}
-                Segment::Arc(bulge) if bulge.abs() < LONG => {
-                    let angle = 4.0 * math::atan(bulge.abs());
-                    // 4/3·tan(a/4)·r, with the chord 2r·sin(a/2); a third of the chord for none.
-                    let sine = math::sin(0.5 * angle);
-                    let length = if sine > 1e-9 {
-                        2.0 / 3.0 * bulge.abs() / sine
-                    } else {
-                        1.0 / 3.0
-                    };
-                    let [u, v] = directions(knot, to);
-                    points.extend([knot.at + length * u, to - length * v].map(PathPoint::cubic));
-                }
-                Segment::Arc(bulge) => {
-                    points.push(PathPoint::arc(arc_middle(knot.at, to, bulge)));
-                }
-                Segment::Cubic(controls) => points.extend(controls.map(PathPoint::cubic)),
+        path_of(knots, true)
+    }
+
+    /// Its segments, which go on smoothly but for the corners of a sharp rectangle.
+    pub(super) fn segmented(&self) -> Vec<Knot> {
+        match self {
+            Self::Shape { shape, turn } => {
+                let is_sharp = matches!(shape, Shape::Rect { radius: 0.0, .. });
+                let mut knots = knots(shape, *turn);
+                knots.iter_mut().for_each(|knot| knot.is_smooth = !is_sharp);
+                knots
             }
+            ring => ring.knots().to_vec(),
         }
-        Path::of_points(points, true)
     }
 
     /// True if an element of its own takes fewer numbers than a part of a path.
@@ -192,14 +100,15 @@ impl Ring {
                 ..
             } => *radius > 0.0,
             Self::Shape { .. } => true,
-            Self::Knots(_) => false,
+            Self::Knots(_) | Self::Line(_) => false,
         }
     }
 
     /// The change of each unknown that moves the ring by about a px.
     pub(super) fn units(&self) -> Vec<f64> {
         let mut units = vec![1.0; self.unknowns()];
-        if let Self::Knots(knots) = self {
+        let knots = self.knots();
+        if !knots.is_empty() {
             for ((i, knot), own) in knots.iter().enumerate().zip(self.owns()) {
                 if let Segment::Arc(_) = knot.segment {
                     // The middle of an arc is half the chord times the bulge beside it.
@@ -216,14 +125,24 @@ impl Ring {
         let count = match self {
             Self::Shape { shape, .. } => numbers(shape).len(),
             Self::Knots(knots) => knots.iter().map(Knot::freedom).sum(),
+            Self::Line(line) => line.freedom(),
         };
         count as f64
+    }
+
+    /// The numbers of a ring that do not count where lines and outlines compete: where it is, and the width of a line, which many
+    /// share.
+    pub(super) fn free_of_charge(&self) -> f64 {
+        match self {
+            Self::Shape { .. } | Self::Knots(_) => 2.0,
+            Self::Line(_) => 3.0,
+        }
     }
 
     /// The number of segments: 1 of a shape.
     pub(super) fn segments(&self) -> usize {
         match self {
-            Self::Shape { .. } => 1,
+            Self::Shape { .. } | Self::Line(_) => 1,
             Self::Knots(knots) => knots.len(),
         }
     }
@@ -237,24 +156,12 @@ impl Ring {
         })
     }
 
-    /// The polyline that replaces segment `i`, without its end, with the derivatives of its vertices.
+    /// The polyline that replaces segment `i`, with the derivatives of its vertices; without its end, if that is its start.
     fn segment(&self, i: usize, own: usize) -> Vec<Vertex> {
         match self {
             Self::Shape { shape, turn } => around(shape, *turn),
-            Self::Knots(knots) => {
-                let k = (i + 1) % knots.len();
-                let ends = Ends {
-                    places: [knots[i].at, knots[k].at],
-                    indices: [2 * i, 2 * k],
-                };
-                let mut vertices = Vec::new();
-                match knots[i].segment {
-                    Segment::Line | Segment::Along(_) => vertices.push(ends.start()),
-                    Segment::Arc(bulge) => arc(&ends, bulge, own, &mut vertices),
-                    Segment::Cubic(controls) => cubic(&ends, controls, own, &mut vertices),
-                }
-                vertices
-            }
+            Self::Knots(knots) => polyline(knots, i, own),
+            Self::Line(line) => line.outline(),
         }
     }
 
@@ -262,18 +169,26 @@ impl Ring {
     pub(super) fn polyline_of(&self, i: usize, owns: &[usize]) -> Vec<Vertex> {
         let mut vertices = self.segment(i, owns[i]);
         match self {
-            // A shape ends where it starts.
-            Self::Shape { .. } => vertices.push(vertices[0]),
-            Self::Knots(knots) => {
-                let k = (i + 1) % knots.len();
-                let ends = Ends {
-                    places: [knots[k].at; 2],
-                    indices: [2 * k; 2],
-                };
-                vertices.push(ends.start());
-            }
+            // What is a ring by itself ends where it starts.
+            Self::Shape { .. } | Self::Line(_) => vertices.push(vertices[0]),
+            Self::Knots(_) => {}
         }
         vertices
+    }
+
+    /// The vertices of the ring, or of its middle.
+    pub(super) fn knots(&self) -> &[Knot] {
+        match self {
+            Self::Shape { .. } => &[],
+            Self::Knots(knots) => knots,
+            Self::Line(line) => &line.knots,
+        }
+    }
+
+    /// The vertices at which a segment goes on in the direction of the one before.
+    pub(super) fn smooth(&self) -> impl Iterator<Item = usize> + '_ {
+        let knots = self.knots().iter().enumerate();
+        knots.filter(|(_, knot)| knot.is_smooth).map(|(i, _)| i)
     }
 
     /// The index of the first unknown of each segment besides its vertices.
@@ -281,23 +196,20 @@ impl Ring {
         match self {
             Self::Shape { .. } => vec![0],
             Self::Knots(knots) => Self::own_unknowns(knots).collect(),
+            Self::Line(line) => Self::own_unknowns(&line.knots).collect(),
         }
     }
 
     /// The angle at vertex `i`, rad.
     pub(super) fn angle(&self, i: usize) -> f64 {
-        let Self::Knots(knots) = self else {
-            return 0.0;
-        };
+        let knots = self.knots();
         let count = knots.len();
         turn(&[(i + count - 1) % count, i, (i + 1) % count].map(|k| knots[k]))
     }
 
     /// The angle at vertex `i`, rad, with its derivatives by the unknowns.
     pub(super) fn joint(&self, i: usize, owns: &[usize]) -> (f64, Vec<(usize, f64)>) {
-        let Self::Knots(knots) = self else {
-            return (0.0, Vec::new());
-        };
+        let knots = self.knots();
         let count = knots.len();
         let [before, after] = [(i + count - 1) % count, (i + 1) % count];
         // Three vertices matter, and what belongs to two segments.
@@ -349,64 +261,8 @@ impl Ring {
     }
 }
 
-/// The angle by which a ring turns at the second of three vertices, rad.
-fn turn(three: &[Knot; 3]) -> f64 {
-    let [[_, before], [after, _]] = [
-        directions(&three[0], three[1].at),
-        directions(&three[1], three[2].at),
-    ];
-    angle_between(before, after)
-}
-
-/// The angle from one direction to another, rad, −π to π.
-pub(super) fn angle_between(u: Vec2, v: Vec2) -> f64 {
-    // The tangent of half the angle is sin/(1 + cos).
-    2.0 * math::atan(u.cross(v) / (u.hypot() * v.hypot() + u.dot(v)).max(1e-12))
-}
-
-/// The weights of a cubic's points at share `t`.
-pub(super) fn weights(t: f64) -> [f64; 4] {
-    let u = 1.0 - t;
-    [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t]
-}
-
-/// The middle of an arc from one place to another: the sagitta is half its bulge times the chord.
-pub(super) fn arc_middle(from: Point, to: Point, bulge: f64) -> Point {
-    let chord = to - from;
-    from.midpoint(to) + 0.5 * bulge * Vec2::new(chord.y, -chord.x)
-}
-
-/// The directions in which the segment behind a vertex begins and ends, at `to`.
-pub(super) fn directions(knot: &Knot, to: Point) -> [Vec2; 2] {
-    let chord = to - knot.at;
-    match knot.segment {
-        Segment::Line | Segment::Along(_) => [chord; 2],
-        Segment::Arc(bulge) => {
-            // Both are half of the arc's angle from the chord.
-            let (sin, cos) = math::sin_cos(2.0 * math::atan(bulge));
-            let turned =
-                |sin: f64| Vec2::new(cos * chord.x - sin * chord.y, sin * chord.x + cos * chord.y);
-            [turned(-sin), turned(sin)]
-        }
-        Segment::Cubic([a, b]) => [a - knot.at, to - b],
-    }
-}
-
-/// The ends of a segment, and the indices of their x.
-struct Ends {
-    places: [Point; 2],
-    indices: [usize; 2],
-}
-
-impl Ends {
-    fn start(&self) -> Vertex {
-        let [x, y] = [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)];
-        Vertex::new(
-            self.places[0],
-            &[(self.indices[0], x), (self.indices[0] + 1, y)],
-        )
-    }
-}
+/// Least radius of a line, px.
+const LEAST_RADIUS: f64 = 0.1;
 
 /// The numbers of a shape. Round corners have a radius, but not sharp ones and those of an infinite radius, which are as round as the
 /// shorter side allows.
@@ -536,20 +392,6 @@ fn knots(shape: &Shape, turn: f64) -> Vec<Knot> {
 /// A side of a round rectangle that is shorter is none, px: half of what a file's second decimal tells.
 const UNSEEN: f64 = 0.005;
 
-/// Segments in the other direction.
-fn turned(knots: &[Knot]) -> Vec<Knot> {
-    let count = knots.len();
-    let knot = |i: usize| Knot {
-        segment: match knots[(i + count - 1) % count].segment {
-            Segment::Arc(bulge) => Segment::Arc(-bulge),
-            Segment::Cubic([a, b]) => Segment::Cubic([b, a]),
-            line => line,
-        },
-        ..knots[i]
-    };
-    (0..count).rev().map(knot).collect()
-}
-
 /// The shape with a finite radius.
 pub(super) fn with_radius(shape: &Shape) -> Shape {
     match *shape {
@@ -642,80 +484,4 @@ fn around(shape: &Shape, turn: f64) -> Vec<Vertex> {
         vertices.reverse();
     }
     vertices
-}
-
-/// A point of an arc in units of its chord, from start to end along x, with its derivative by the bulge.
-///
-/// With the plane as complex numbers, t/(t + c·(1 − t)) is an arc from 0 to 1, as Möbius' maps take lines to circles. Its middle is
-/// (1 − ib)/2, as that of the arc with the bulge b, for c = (1 + ib)/(1 − ib).
-fn on_arc(bulge: f64, t: f64) -> [Vec2; 2] {
-    let square = 1.0 + bulge * bulge;
-    let times = |a: Vec2, b: Vec2| Vec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
-    let c = Vec2::new(1.0 - bulge * bulge, 2.0 * bulge) / square;
-    let below = Vec2::new(t, 0.0) + (1.0 - t) * c;
-    // One over it.
-    let inverse = Vec2::new(below.x, -below.y) / below.hypot2();
-    let slope = 2.0 * Vec2::new(-c.y, c.x) / square;
-    [
-        t * inverse,
-        -t * (1.0 - t) * times(slope, times(inverse, inverse)),
-    ]
-}
-
-/// Appends the vertices of an arc, without its end.
-fn arc(ends: &Ends, bulge: f64, own: usize, vertices: &mut Vec<Vertex>) {
-    let [from, to] = ends.places;
-    let chord = to - from;
-    let length = chord.hypot();
-    let angle = 4.0 * math::atan(bulge.abs());
-    let radius = length * (1.0 + bulge * bulge) / (4.0 * bulge.abs()).max(1e-9);
-    let step = (8.0 * TOLERANCE / radius.max(TOLERANCE)).sqrt();
-    // The longest step is the middle one, which is b/atan(b) times the mean.
-    let longest = if angle > 1e-6 {
-        4.0 * bulge.abs() / angle
-    } else {
-        1.0
-    };
-    let count = (longest * angle / step).ceil().clamp(2.0, 400.0);
-    let across = Vec2::new(-chord.y, chord.x);
-    let place = |p: Vec2| p.x * chord + p.y * across;
-    for i in 0..count as usize {
-        let [p, by_bulge] = on_arc(bulge, i as f64 / count);
-        // The chord turns and stretches with its ends: x·chord + y·across is complex multiplication.
-        let [along, beside] = [Vec2::new(p.x, p.y), Vec2::new(-p.y, p.x)];
-        let [x, y] = [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)];
-        let [a, b] = ends.indices;
-        let slopes = [
-            (a, x - along),
-            (a + 1, y - beside),
-            (b, along),
-            (b + 1, beside),
-            (own, place(by_bulge)),
-        ];
-        vertices.push(Vertex::new(from + place(p), &slopes));
-    }
-}
-
-/// Appends the vertices of a cubic, without its end.
-fn cubic(ends: &Ends, [c, d]: [Point; 2], own: usize, vertices: &mut Vec<Vertex>) {
-    let [from, to] = ends.places;
-    let bend =
-        |a: Point, b: Point, c: Point| (a.to_vec2() - 2.0 * b.to_vec2() + c.to_vec2()).hypot();
-    // The second derivative is at most 6 times the larger of these.
-    let bend = 6.0 * bend(from, c, d).max(bend(c, d, to));
-    let count = (bend / (8.0 * TOLERANCE)).sqrt().ceil().clamp(2.0, 200.0);
-    let [a, b] = ends.indices;
-    for i in 0..count as usize {
-        let weights = weights(i as f64 / count);
-        let points = [from, c, d, to].map(Point::to_vec2);
-        let at = weights
-            .iter()
-            .zip(points)
-            .map(|(w, p)| *w * p)
-            .sum::<Vec2>();
-        let slopes = [a, own, own + 2, b].into_iter().zip(weights);
-        let slopes = slopes.flat_map(|(k, w)| [(k, Vec2::new(w, 0.0)), (k + 1, Vec2::new(0.0, w))]);
-        let slopes: Vec<(usize, Vec2)> = slopes.collect();
-        vertices.push(Vertex::new(at.to_point(), &slopes));
-    }
 }

@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 use crate::math::{self, Normal, Point, Vec2};
 
 use super::super::contour::Place;
-use super::curve::{Knot, Ring, Segment, angle_between, weights};
+use super::curve::Ring;
+use super::segment::{Knot, Segment, angle_between, weights};
 
 /// A place of a contour, and its standard deviation, px.
 #[derive(Debug, Clone, Copy)]
@@ -112,8 +113,49 @@ pub(super) fn polygon_of(contour: &[Place]) -> Option<Ring> {
     (corners.len() > 2).then(|| Ring::Knots(corners.into_iter().map(corner).collect()))
 }
 
+/// The vertices of the middle of a line along samples, in their order.
+pub(super) fn line(samples: &[Sample], is_closed: bool) -> Option<Vec<Knot>> {
+    // At a corner both segments go on until they meet.
+    let always = |_| true;
+    let gaps = samples
+        .iter()
+        .filter(|sample| sample.gap.is_some())
+        .map(|sample| vec![sample.at]);
+    let gaps: Vec<Vec<Point>> = gaps.collect();
+    let contour = |samples: Vec<Sample>| Contour {
+        samples,
+        gaps: gaps.clone(),
+        is_hidden: &always,
+    };
+    if is_closed {
+        return match ring(&contour(samples.to_vec()))? {
+            Ring::Knots(knots) => Some(knots),
+            _ => None,
+        };
+    }
+    // Between the end and the start of an open line is nothing, which takes the place of a gap.
+    let nothing = Sample {
+        at: samples.first()?.at.midpoint(samples.last()?.at),
+        sigma: f64::INFINITY,
+        gap: Some(NOTHING),
+    };
+    let samples = [nothing]
+        .into_iter()
+        .chain(samples.iter().copied())
+        .collect();
+    let contour = contour(samples);
+    let candidates = candidates(&contour.samples);
+    let mut knots = around(&contour, &candidates, 0, &mut Fits::new())?.knots;
+    // The end comes first there.
+    knots.rotate_left(1);
+    Some(knots)
+}
+
+/// The gap between the end and the start of an open line.
+const NOTHING: usize = usize::MAX;
+
 /// A vertex with a line behind it.
-fn corner(at: Point) -> Knot {
+pub(super) fn corner(at: Point) -> Knot {
     Knot {
         at,
         segment: Segment::Line,
@@ -183,7 +225,7 @@ fn around(
                 }
                 if fits.len() <= kind {
                     fits.push(match kind {
-                        0 => line(&open, a, b),
+                        0 => straight(&open, a, b),
                         1 => arc(&open, a, b),
                         _ => cubic(&open, a, b),
                     });
@@ -233,8 +275,10 @@ fn around(
     let length = |span: &Span| places[span.to] - places[span.from];
     let joined = |a: &Span, b: &Span| {
         let sample = &open[places[b.from]];
-        if let Some(gap) = sample.gap {
-            return contour.bridge(a, b, gap);
+        match sample.gap {
+            Some(NOTHING) => return apart([a.fitted.ends[1], b.fitted.ends[0]]),
+            Some(gap) => return contour.bridge(a, b, gap),
+            None => {}
         }
         let may_be_smooth = [a, b]
             .iter()
@@ -339,6 +383,17 @@ struct Joint {
     between: Vec<Point>,
     is_smooth: bool,
     is_beneath: bool,
+}
+
+/// No joint: the end and the start of an open line.
+fn apart(ends: [End; 2]) -> Joint {
+    Joint {
+        cost: 0.0,
+        ends: ends.map(|end| end.at),
+        between: Vec::new(),
+        is_smooth: false,
+        is_beneath: false,
+    }
 }
 
 /// The cheaper joint between the end of a segment of so many samples and the start of the next one.
@@ -609,7 +664,7 @@ fn end_of(samples: &[Sample], [a, b]: [usize; 2], end: usize) -> Point {
 }
 
 /// The line along the samples between two.
-fn line(samples: &[Sample], a: usize, b: usize) -> Option<Fitted> {
+fn straight(samples: &[Sample], a: usize, b: usize) -> Option<Fitted> {
     // The ends are left out, where there are others: corners have rounded them.
     let inner = if b - a < 3 {
         &samples[a..=b]

@@ -1,10 +1,13 @@
 //! Edits of a ring, each judged by what it changes of its description's length: half of χ² of the pixels near it, and a price for each
 //! number.
 
+use std::collections::BTreeSet;
+
 use super::coverage::{Band, Coverage, Page};
-use super::curve::{Knot, Ring, Segment, arc_middle, directions, weights};
+use super::curve::Ring;
 use super::describe::PRICE;
 use super::refine::{Target, all, chi2, refined};
+use super::segment::{Knot, NEARLY, Segment, arc_middle, directions, weights};
 use crate::math::{self, Point, Vec2};
 
 /// Iterations in which an edit settles.
@@ -15,9 +18,9 @@ const LEAST: f64 = 0.5;
 const NEAR: usize = 2;
 
 /// An edit: the knots after it, and the vertices that it changed.
-struct Edit {
-    knots: Vec<Knot>,
-    changed: Vec<usize>,
+pub(super) struct Edit {
+    pub(super) knots: Vec<Knot>,
+    pub(super) changed: Vec<usize>,
 }
 
 /// Improves a ring until no edit does. `target` is what it is to cover of a part of the page.
@@ -26,7 +29,7 @@ pub(super) fn improve(ring: &mut Ring, target: &dyn Fn(Band) -> Target, page: Pa
         // Segments that are to be tried; each edit lets its neighbours be tried again.
         let mut fresh: Vec<bool> = vec![true; ring.segments()];
         let mut costs = if is_adding {
-            costs(ring, target, page)
+            costs(ring, &all(ring), target, page)
         } else {
             Vec::new()
         };
@@ -66,15 +69,20 @@ pub(super) fn improve(ring: &mut Ring, target: &dyn Fn(Band) -> Target, page: Pa
             let (before, count) = (fresh.len(), edited.segments());
             if count > before {
                 fresh.insert(i, true);
+                costs.insert(i.min(costs.len()), 0.0);
             } else if count < before {
                 fresh.remove(i);
             }
-            for k in changed {
-                (0..2 * NEAR + 1).for_each(|d| fresh[(k + count * NEAR + d - NEAR) % count] = true);
-            }
+            let moved = near(&changed, count);
+            moved.iter().for_each(|&k| fresh[k] = true);
             *ring = edited;
             if is_adding {
-                costs = self::costs(ring, target, page);
+                costs.resize(count, 0.0);
+                let settled = self::costs(ring, &moved, target, page);
+                moved
+                    .into_iter()
+                    .zip(settled)
+                    .for_each(|(k, cost)| costs[k] = cost);
             }
         }
         if !is_changed && !is_adding {
@@ -83,21 +91,30 @@ pub(super) fn improve(ring: &mut Ring, target: &dyn Fn(Band) -> Target, page: Pa
     }
 }
 
-/// Half of χ² of the pixels that each segment touches.
-fn costs(ring: &Ring, target: &dyn Fn(Band) -> Target, page: Page) -> Vec<f64> {
-    let all = all(ring);
-    let target = target(Band::of(ring, &all, &[], page));
+/// Some segments of a ring of so many, and those beside them that settle with them.
+fn near(segments: &[usize], count: usize) -> Vec<usize> {
+    let around = |k: &usize| {
+        let k = *k;
+        (0..2 * NEAR + 1).map(move |d| (k + count * NEAR + d - NEAR) % count)
+    };
+    let near: BTreeSet<usize> = segments.iter().flat_map(around).collect();
+    near.into_iter().collect()
+}
+
+/// Half of χ² of the pixels that each of some segments touches.
+fn costs(ring: &Ring, segments: &[usize], target: &dyn Fn(Band) -> Target, page: Page) -> Vec<f64> {
+    let target = target(Band::of(ring, segments, &[], page));
     let shares = Coverage::of(ring, &target.band).shares();
     let owns = ring.owns();
     let mut alone = Coverage::none(&target.band);
-    let cost = |i: usize| {
+    let cost = |&i: &usize| {
         alone.forget();
         alone.add(ring, i, &owns);
         let errors = alone.touched().into_iter();
         let errors = errors.map(|pixel| target.error(pixel, shares[pixel]));
         0.5 * errors.map(|error| error * error).sum::<f64>()
     };
-    all.into_iter().map(cost).collect()
+    segments.iter().map(cost).collect()
 }
 
 /// The best of some edits about segment `i`, if it shortens the description by more than `least`, and what it changed.
@@ -123,13 +140,7 @@ fn best(
     for edit in edits {
         let ring = Ring::Knots(edit.knots);
         let count = ring.segments();
-        let mut free: Vec<usize> = edit
-            .changed
-            .iter()
-            .flat_map(|k| (0..2 * NEAR + 1).map(move |d| (k + count * NEAR + d - NEAR) % count))
-            .collect();
-        free.sort_unstable();
-        free.dedup();
+        let free = near(&edit.changed, count);
         let price = PRICE * ring.freedom();
         let (ring, chi2) = refined(&ring, &free, &target, ITERATIONS, 2.0 * (length - price));
         let now = 0.5 * chi2 + price;
@@ -142,7 +153,7 @@ fn best(
 }
 
 /// Edits of segment `i` that add numbers.
-fn longer(knots: &[Knot], i: usize) -> Vec<Edit> {
+pub(super) fn longer(knots: &[Knot], i: usize) -> Vec<Edit> {
     let count = knots.len();
     let next = (i + 1) % count;
     let mut edits = Vec::new();
@@ -230,7 +241,7 @@ fn longer(knots: &[Knot], i: usize) -> Vec<Edit> {
 }
 
 /// Edits at the start of segment `i` that take numbers away.
-fn shorter(knots: &[Knot], i: usize) -> Vec<Edit> {
+pub(super) fn shorter(knots: &[Knot], i: usize) -> Vec<Edit> {
     let count = knots.len();
     let before = (i + count - 1) % count;
     let mut edits = Vec::new();
@@ -283,22 +294,8 @@ fn shorter(knots: &[Knot], i: usize) -> Vec<Edit> {
     };
     match knots[i].segment {
         Segment::Line => {
-            // Along the nearer axis, at the middle of its ends.
-            let way = to - three[1].at;
-            let axis = usize::from(way.y.abs() > way.x.abs());
-            let mut knots = knots.to_vec();
-            let middle = three[1].at.midpoint(to);
-            for k in [i, (i + 1) % count] {
-                let at = &mut knots[k].at;
-                match axis {
-                    0 => at.y = middle.y,
-                    _ => at.x = middle.x,
-                }
-            }
-            let is_near = (knots[i].at - three[1].at).hypot() < NEARLY;
-            knots[i].segment = Segment::Along(axis);
             let changed = vec![i, (i + 1) % count];
-            edits.extend(is_near.then_some(Edit { knots, changed }));
+            edits.extend(along(knots, i).map(|knots| Edit { knots, changed }));
         }
         Segment::Along(_) => {}
         Segment::Arc(bulge) if bulge.abs() < 0.1 => with(Segment::Line),
@@ -312,8 +309,25 @@ fn shorter(knots: &[Knot], i: usize) -> Vec<Edit> {
     edits
 }
 
-/// Farthest that the ends of a line are from one along an axis, px, at which that is tried. Pixels judge it.
-const NEARLY: f64 = 0.5;
+/// The line behind vertex `i` along the nearer axis, at the middle of its ends, if it is nearly so.
+pub(super) fn along(knots: &[Knot], i: usize) -> Option<Vec<Knot>> {
+    let next = (i + 1) % knots.len();
+    let [from, to] = [knots[i].at, knots[next].at];
+    let way = to - from;
+    let axis = usize::from(way.y.abs() > way.x.abs());
+    let middle = from.midpoint(to);
+    let mut knots = knots.to_vec();
+    for k in [i, next] {
+        let at = &mut knots[k].at;
+        match axis {
+            0 => at.y = middle.y,
+            _ => at.x = middle.x,
+        }
+    }
+    knots[i].segment = Segment::Along(axis);
+    ((knots[i].at - from).hypot() < NEARLY).then_some(knots)
+}
+
 /// Largest distance of a new segment from what it replaces, root of the mean of squares, px, at which it is tried: edits that were made
 /// began nearer. A guess.
 const FAR: f64 = 0.15;
@@ -368,7 +382,7 @@ fn handles(knot: &Knot, to: Point) -> [Point; 2] {
 }
 
 /// The bulge of the arc between two points near a third one.
-fn bulge_of(from: Point, to: Point, on: Point) -> f64 {
+pub(super) fn bulge_of(from: Point, to: Point, on: Point) -> f64 {
     let chord = to - from;
     // The sagitta over half the chord, positive on the side to which (y, −x) points.
     2.0 * (on - from.midpoint(to)).dot(Vec2::new(chord.y, -chord.x)) / chord.hypot2().max(1e-12)

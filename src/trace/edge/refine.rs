@@ -4,7 +4,8 @@
 //! least-squares estimation of nonlinear parameters", 1963.
 
 use super::coverage::{Band, Coverage};
-use super::curve::{Ring, Segment};
+use super::curve::Ring;
+use super::segment::Segment;
 use crate::math::Normal;
 
 /// What a ring is to cover.
@@ -15,12 +16,16 @@ pub(super) struct Target {
     pub(super) shares: Vec<f64>,
     /// Standard deviation of each share; infinite where nothing is known.
     pub(super) sigmas: Vec<f64>,
+    /// How far the coverage of each pixel may be from its share for nothing, as other things may be there.
+    pub(super) slacks: Vec<f64>,
 }
 
 impl Target {
     /// How far a share is from that of a pixel of the band, in units of its deviation.
     pub(super) fn error(&self, pixel: usize, share: f64) -> f64 {
-        (share - self.shares[pixel]) / self.sigmas[pixel]
+        let away = share - self.shares[pixel];
+        let slack = self.slacks[pixel];
+        (away - away.clamp(-slack, slack)) / self.sigmas[pixel]
     }
 }
 
@@ -60,6 +65,25 @@ impl<'a> Moving<'a> {
             Ring::Shape { .. } => {
                 moves[0] = true;
                 indices.fill(Some(0));
+            }
+            // An outline is one polyline, whichever of its vertices move.
+            Ring::Line(line) => {
+                moves[0] = true;
+                let count = line.knots.len();
+                let owns = ring.owns();
+                for &i in free {
+                    indices[2 * i] = Some(0);
+                    indices[2 * i + 1] = Some(0);
+                    for k in [i, (i + count - 1) % count]
+                        .into_iter()
+                        .filter(|k| *k < line.segments())
+                    {
+                        let own = owns[k]..owns[k] + line.knots[k].segment.unknowns();
+                        indices[own].fill(Some(0));
+                    }
+                }
+                indices[line.radius_index()] = Some(0);
+                joints.extend(ring.smooth());
             }
             Ring::Knots(knots) => {
                 for &i in free {
@@ -155,7 +179,8 @@ impl<'a> Moving<'a> {
         let (mut pixels, mut slopes) = (Vec::new(), Vec::new());
         for (pixel, unknown, slope) in coverage.slopes() {
             let sigma = target.sigmas[pixel];
-            let Some(index) = self.indices[unknown].filter(|_| sigma.is_finite()) else {
+            let is_open = sigma.is_finite() && target.error(pixel, shares[pixel]) != 0.0;
+            let Some(index) = self.indices[unknown].filter(|_| is_open) else {
                 continue;
             };
             if rows[pixel] == NONE {
@@ -207,9 +232,7 @@ impl<'a> Moving<'a> {
 /// For each unknown of a ring an earlier one that has its value, too.
 fn ties(ring: &Ring) -> Vec<Option<usize>> {
     let mut ties = vec![None; ring.unknowns()];
-    let Ring::Knots(knots) = ring else {
-        return ties;
-    };
+    let knots = ring.knots();
     let first = |ties: &[Option<usize>], mut k: usize| {
         while let Some(before) = ties[k] {
             k = before;

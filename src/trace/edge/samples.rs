@@ -15,18 +15,20 @@ const CLEAN: f64 = 0.03;
 const BETWEEN: f64 = 0.12;
 /// Most pixels from an edge to where the share is flat, beyond which the sum has other edges, too.
 const REACH: i32 = 3;
+/// Share of a pixel that hides where an edge runs through it. A guess.
+const TOUCHED: f32 = 0.05;
 /// Length of an edge beside its hidden part, px, along which the contour turns with what hides it.
 const ENDING: f64 = 1.5;
 /// Fewest samples between two gaps; fewer are hidden, too. A guess.
 const FEWEST: usize = 3;
 
-/// The samples along a contour of a field, and the places of its gaps. `doubt` is the standard deviation of a share, and `is_hidden`
-/// tells where an outline would not be seen.
+/// The samples along a contour of a field, and the places of its gaps. `doubt` is the standard deviation of a share, and `hidden`
+/// is the share of a place where an outline would not be seen.
 pub(super) fn samples(
     field: &Field,
     contour: &[Place],
     doubt: impl Fn([i32; 2]) -> f64,
-    is_hidden: impl Fn(Point) -> bool,
+    hidden: impl Fn(Point) -> f32,
 ) -> (Vec<Sample>, Vec<Vec<Point>>) {
     // 1. The direction out of the shape at each place, and how far it is hidden.
     let count = contour.len();
@@ -36,27 +38,17 @@ pub(super) fn samples(
         [-(b[1] - a[1]) / length, (b[0] - a[0]) / length]
     };
     let outward: Vec<Place> = (0..count).map(outward).collect();
-    // Half a pixel farther out it would be hidden.
-    let hidden = |i: usize| {
-        is_hidden(Point::new(
-            f64::from(contour[i][0] + 0.75 * outward[i][0]),
-            f64::from(contour[i][1] + 0.75 * outward[i][1]),
-        ))
-    };
-    let hidden: Vec<bool> = (0..count).map(hidden).collect();
-    let ending = near_hidden(contour, &hidden);
+    // A place lies between two pixels; what hides a part of either hides where between them the edge is.
+    let is_hidden = |place: &Place| hidden(math::point(*place)) > TOUCHED;
+    let is_hidden: Vec<bool> = contour.iter().map(is_hidden).collect();
+    let ending = near_hidden(contour, &is_hidden);
     // 2. What each place tells; none where it is hidden.
     let mut samples: Vec<Sample> = Vec::with_capacity(count);
     for i in 0..count {
         let (at, out) = (contour[i], outward[i].map(f64::from));
-        if hidden[i] || ending[i] {
-            let shift = if hidden[i] { 0.75 } else { 0.0 };
-            let place = Point::new(
-                f64::from(at[0]) + shift * out[0],
-                f64::from(at[1]) + shift * out[1],
-            );
+        if is_hidden[i] || ending[i] {
             samples.push(Sample {
-                at: place,
+                at: math::point(at),
                 sigma: f64::INFINITY,
                 gap: Some(0),
             });

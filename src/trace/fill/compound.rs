@@ -24,6 +24,8 @@ pub(in crate::trace) struct Fill<R = Path> {
     pub(super) rank: usize,
     /// The regions that it covers.
     pub(super) covers: Vec<u32>,
+    /// Deviation of the shares of pixels from what the rings cover, in the middle of edges, where these are placed.
+    pub(super) deviation: f64,
 }
 
 /// Colours that differ by less are one, levels. A guess.

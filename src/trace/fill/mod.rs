@@ -26,7 +26,7 @@ mod span;
 mod stack;
 mod translucent;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
@@ -85,8 +85,8 @@ const HIDDEN: f32 = 32.0;
 /// Most pixel edges between areas that are placed where they are seen: of longer outlines, descents take less time. Blobs of noise of
 /// 2,000 px take 112 s without this bound, and 41 s with it.
 const MOST_EDGES: u32 = 6_000;
-/// Share of a place that what lies on top covers from which on an edge is hidden there. A guess.
-const COVERED: f32 = 0.9;
+/// Least share of a pixel that is not hidden for it to tell something of what is seen there. A guess.
+const LEAST_SEEN: f32 = 0.03;
 
 impl<'a> Flat<'a> {
     /// The stack of a picture whose shapes come apart like this, if it is one of few colours.
@@ -217,8 +217,8 @@ impl<'a> Flat<'a> {
         self.filled(layer, rings.collect(), gains)
     }
 
-    /// The areas of all layers where their edges are seen, back to front; `None` where colours do not tell that.
-    pub(super) fn placed(&self) -> Option<Vec<Filled>> {
+    /// The shapes of the stack where their edges are seen, from back to front, unless these are too long.
+    pub(super) fn placed_fills(&self) -> Option<Vec<Fill<Ring>>> {
         let touching = self.neighbours.iter().flat_map(BTreeMap::values);
         // Each pair of pixels counts for both of its regions.
         if touching.sum::<u32>() > 2 * MOST_EDGES {
@@ -227,58 +227,78 @@ impl<'a> Flat<'a> {
         let spreads = self.spreads();
         let gains = self.gains();
         let layers = self.stack.layers.par_iter();
-        let fills: Option<Vec<Option<Fill<Ring>>>> = layers
-            .map(|layer| self.placed_fill(layer, &gains, &spreads))
-            .collect();
-        let fills: Vec<Fill<Ring>> = fills?.into_iter().flatten().collect();
+        let fills = layers.filter_map(|layer| self.placed_fill(layer, &gains, &spreads));
+        Some(fills.collect())
+    }
+
+    /// The areas of shapes, those of one colour joined, from back to front, beside so many strokes. Those of `left_out` regions are
+    /// not drawn. `None` where colours do not tell where their edges are.
+    pub(super) fn placed_areas(
+        &self,
+        fills: &[Fill<Ring>],
+        left_out: &[bool],
+        strokes: usize,
+    ) -> Option<Vec<Filled>> {
+        let fills = fills.iter().filter(|fill| !left_out[fill.region as usize]);
+        let fills: Vec<Fill<Ring>> = fills.cloned().collect();
+        if fills.iter().any(|fill| fill.deviation >= SURE) {
+            return None;
+        }
         let joined = self.joined(fills);
         let is_only = joined.len() == 1;
-        let mut room = self.tracing.most.saturating_sub(joined.len());
+        let mut room = self.tracing.most.saturating_sub(joined.len() + strokes);
         Some(self.painted(&joined, |rings| compound::paths(rings, is_only, &mut room)))
     }
 
-    /// The shape of a layer by its edges; `None` where colours do not tell where they are.
-    fn placed_fill(
-        &self,
-        layer: &Layer,
-        gains: &[f32],
-        spreads: &[f64],
-    ) -> Option<Option<Fill<Ring>>> {
+    /// The shape of a layer by its edges.
+    fn placed_fill(&self, layer: &Layer, gains: &[f32], spreads: &[f64]) -> Option<Fill<Ring>> {
         let (width, height) = (self.regions.width, self.regions.height);
-        let (field, mut free) = self.seen_of(layer);
-        let doubts = self.doubts(layer, (&field, &free), spreads);
-        // How far an outline goes on beneath others is a matter of how renderers mix them, so that descents find it.
-        if self.is_partly_hidden(&field, &doubts) {
-            return None;
-        }
-        free[layer.region as usize] = false;
+        let (mut field, mut hides) = self.seen_of(layer);
+        hides[layer.region as usize] = false;
+        let shown = self.members(&[layer.region]);
+        let doubts = self.doubts(&mut field, (&shown, &hides), spreads);
         // Beyond its border the picture hides what it cuts, but shapes do not go on far.
         let far = |at: f64, size: usize| !(-BEYOND..size as f64 + BEYOND).contains(&at);
-        let is_hidden = |p: Point| {
-            let is_far = far(p.x, width) || far(p.y, height);
-            !is_far && self.share_at(math::xy(p), &free) > COVERED
+        let hidden = |p: Point| match far(p.x, width) || far(p.y, height) {
+            true => 0.0,
+            false => self.share_at(math::xy(p), &hides),
         };
-        let (rings, deviation) = edge::rings(&field, &doubts, is_hidden);
-        (deviation < SURE).then(|| self.filled(layer, rings, gains))
+        let (rings, deviation) = edge::rings(&field, &doubts, hidden);
+        let fill = self.filled(layer, rings, gains)?;
+        Some(Fill { deviation, ..fill })
     }
 
-    /// True if the outline of a field runs, on the page, between pixels of which nothing is known.
-    fn is_partly_hidden(&self, field: &Field, doubts: &[f64]) -> bool {
-        let (width, height) = (self.regions.width as i32, self.regions.height as i32);
-        let is_covered = |k: usize| field.values[k] >= 0.5;
-        let crosses = |k: usize, next: usize| {
-            let is_known = doubts[k].is_finite() && doubts[next].is_finite();
-            is_covered(k) != is_covered(next) && !is_known
+    /// Lines along middles that draw what some shapes show; `None` where colours do not tell where they are, or if the shapes have a
+    /// shorter description.
+    pub(super) fn lines(
+        &self,
+        fills: &[&Fill<Ring>],
+        middles: &[edge::Middle],
+    ) -> Option<Vec<edge::Line>> {
+        let regions: Vec<u32> = fills.iter().map(|fill| fill.region).collect();
+        let covers = fills.iter().flat_map(|fill| &fill.covers);
+        let covers: BTreeSet<u32> = covers.copied().collect();
+        let layer = Layer {
+            region: *regions.first()?,
+            rank: fills.iter().map(|fill| fill.rank).min()?,
+            covers: covers.into_iter().collect(),
         };
-        (0..field.values.len()).any(|k| {
-            let [x, y] = [k % field.width, k / field.width];
-            let [x, y] = [field.origin[0] + x as i32, field.origin[1] + y as i32];
-            let is_within = x >= 0 && y >= 0 && x < width && y < height;
-            let beside = (x + 1 < width).then_some(k + 1);
-            let below = (y + 1 < height).then_some(k + field.width);
-            let mut next = beside.into_iter().chain(below);
-            is_within && next.any(|next| next < doubts.len() && crosses(k, next))
-        })
+        // What lies on top hides a line, and so does what has its colour.
+        let (mut field, mut hides) = self.seen_of(&layer);
+        let label = self.label(layer.region);
+        let alike = self.regions.list.iter().map(|other| other.label == label);
+        hides
+            .iter_mut()
+            .zip(alike)
+            .for_each(|(hides, is_alike)| *hides |= is_alike);
+        regions.iter().for_each(|&r| hides[r as usize] = false);
+        let shown = self.members(&regions);
+        let doubts = self.doubts(&mut field, (&shown, &hides), &self.spreads());
+        let rings = fills.iter().flat_map(|fill| fill.rings.iter().cloned());
+        let rings: Vec<Ring> = rings.collect();
+        let lines = edge::lines(&field, &doubts, middles, &rings)?;
+        let [by_lines, by_rings] = lines.lengths;
+        (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
     }
 
     /// The shares of pixels that a layer covers, and for each region whether it hides the layer's outline.
@@ -307,25 +327,41 @@ impl<'a> Flat<'a> {
             gain: gains[layer.region as usize],
             rank: layer.rank,
             covers: layer.covers.clone(),
+            deviation: 0.0,
         })
     }
 
-    /// The standard deviation of the share of each pixel of a field; infinite where what is `free` hides it.
-    fn doubts(&self, layer: &Layer, (field, free): (&Field, &[bool]), spreads: &[f64]) -> Vec<f64> {
+    /// The standard deviation of the share of each pixel of a field, and, where something `hides` a part of the pixel, that share: all
+    /// of what is seen there, if it is `shown`, or nothing. Where nothing is seen, the deviation is infinite.
+    fn doubts(
+        &self,
+        field: &mut Field,
+        (shown, hides): (&[bool], &[bool]),
+        spreads: &[f64],
+    ) -> Vec<f64> {
         let regions = &self.regions;
-        let is_hiding = |r: u32| free[r as usize] && r != layer.region;
-        let doubt = |k: usize| {
-            let [x, y] = [
-                field.origin[0] + (k % field.width) as i32,
-                field.origin[1] + (k / field.width) as i32,
-            ];
+        let (origin, width) = (field.origin, field.width);
+        let height = field.values.len() / width;
+        let doubt = |(k, value): (usize, &mut f32)| {
+            let [column, row] = [k % width, k / width];
+            // Contours need a border of zeros.
+            let is_border = column == 0 || row == 0 || column + 1 == width || row + 1 == height;
+            let [x, y] = [origin[0] + column as i32, origin[1] + row as i32];
             if x < 0 || y < 0 || x as usize >= regions.width || y as usize >= regions.height {
                 return f64::INFINITY;
             }
             let i = y as usize * regions.width + x as usize;
             let (own, second) = (regions.of[i], regions.second[i]);
-            if is_hiding(own) || (regions.share[i] > 0.0 && is_hiding(second)) {
+            let hidden = regions.share_of(i, hides);
+            if 1.0 - hidden < LEAST_SEEN {
                 return f64::INFINITY;
+            }
+            let seen = match hides[own as usize] {
+                true => second,
+                false => own,
+            };
+            if hidden > 0.0 && !is_border {
+                *value = f32::from(u8::from(shown[seen as usize]));
             }
             // A pixel of one region tells by its colour that none of its neighbours' is there.
             let others = match own == second {
@@ -341,9 +377,13 @@ impl<'a> Flat<'a> {
                 .min_by(|a, b| a.0.total_cmp(&b.0))
                 .unwrap_or((1.0, 0.0));
             let noise = f64::from(self.tracing.doubt.max(0.3) * LEVEL).max(spread);
-            math::hypot(RENDERED, noise / contrast.max(0.01))
+            // What two colours do not explain may be a third one.
+            let rest = f64::from(away(&self.pixels.target.at(i), &self.seen(i)));
+            let rest = if own == second { 0.0 } else { rest };
+            math::hypot(RENDERED, math::hypot(noise, rest) / contrast.max(0.01))
+                / f64::from(1.0 - hidden)
         };
-        (0..field.values.len()).map(doubt).collect()
+        field.values.iter_mut().enumerate().map(doubt).collect()
     }
 
     /// The regions that the pixels beside a pixel belong to, but its own.
@@ -488,6 +528,14 @@ impl<'a> Flat<'a> {
     /// The part of a region.
     pub(super) fn part(&self, region: u32) -> Part {
         self.regions.list[region as usize].part
+    }
+
+    /// True if a shape came apart.
+    pub(super) fn is_apart(&self) -> bool {
+        self.regions
+            .list
+            .iter()
+            .any(|region| region.part != Part::Whole)
     }
 
     /// The label of a region.

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::super::areas::{LEVEL, Pixel, away, distance2};
+use super::super::areas::{LEVEL, Pixel, away, distance2, mix};
 use super::super::parts::{Part, Parts};
 use super::colors::{self, CANVAS, Colors};
 use super::mixtures::{Mixture, best_mixture};
-use crate::math::median;
+use crate::math::{Normal, median};
 use crate::scene::Shade;
 
 /// A region.
@@ -217,10 +217,8 @@ fn dissolve(
             continue;
         }
         // What tapers off is beside both colours only at its end.
-        let all = match pixels.len() {
-            ..SHORT => pixels.as_slice(),
-            _ => &[],
-        };
+        let is_long = pixels.len() >= SHORT;
+        let all = if is_long { &[] } else { pixels.as_slice() };
         let mixed = pixels.iter().map(|&i| {
             let near = labels_without(colors, mixtures, label, all, i as usize);
             let mixture = best_mixture(colors, &near, i as usize);
@@ -231,7 +229,7 @@ fn dissolve(
         let is_open =
             |i, m: &Mixture| is_border(colors, i) && (m.own == CANVAS || m.other == CANVAS);
         let is_edge = |&(&i, (m, labels)): &(&u32, &(Mixture, usize))| {
-            m.error < EDGE * EDGE
+            (m.error < EDGE * EDGE || (is_long && has_third(colors, label, m, i as usize)))
                 && m.share > 0.04
                 && (*labels < 3
                     || is_open(i as usize, m)
@@ -252,6 +250,34 @@ fn dissolve(
 
 /// Root of the squared error below which a mixture explains a pixel of a thin region. A guess.
 const EDGE: f32 = 8.0 * LEVEL;
+
+/// True if a pixel shows a third colour besides those of a mixture, as far as it is seen between two edges that coincide: a renderer
+/// covers a share a of a pixel by each, so that (1 − a)·a, a quarter at most, of what is below the upper one stays.
+fn has_third(colors: &Colors<'_>, label: u16, mixture: &Mixture, i: usize) -> bool {
+    const MOST: f32 = 0.25;
+    let target = colors.pixels.target.at(i);
+    let [a, b] = [mixture.own, mixture.other].map(|label| colors.at(label, i));
+    let flat = 0..=colors.list.len() as u16;
+    let mut others = flat.filter(|third| ![label, mixture.own, mixture.other].contains(third));
+    others.any(|third| {
+        // The shares s and t of b and of the third colour, by least squares.
+        let c = colors.at(third, i);
+        let mut equations = Normal::<1>::of(2);
+        for k in 0..6 {
+            let terms = [(0, f64::from(b[k] - a[k])), (1, f64::from(c[k] - a[k]))];
+            equations.add(&terms, [f64::from(target[k] - a[k])], 1.0);
+        }
+        let Some(shares) = equations.solve() else {
+            return false;
+        };
+        let [s, t] = [shares[0][0] as f32, shares[1][0] as f32];
+        let drawn = mix(&mix(&a, &b, s / (1.0 - t).max(f32::MIN_POSITIVE)), &c, t);
+        s > 0.0
+            && s + t < 1.0
+            && (0.0..=MOST).contains(&t)
+            && distance2(&target, &drawn) < EDGE * EDGE
+    })
+}
 
 /// True if a region is about a pixel thick: few of its pixels are corners of squares of four.
 fn is_thin(colors: &Colors<'_>, of: &[u32], region: u32, pixels: &[u32]) -> bool {

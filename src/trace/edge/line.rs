@@ -1,0 +1,321 @@
+//! Lines of one width: their outlines as functions of the vertices of their middle and of their radius.
+
+use std::f64::consts::PI;
+
+use super::segment::{Knot, NEARLY, Segment, Vertex, directions, path_of, polyline, turned};
+use crate::math::{self, Vec2};
+use crate::scene::{Cap, Path, Shape};
+
+/// A line of one width.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::trace) struct Line {
+    /// The vertices of its middle; behind the last one of an open line is nothing.
+    pub(super) knots: Vec<Knot>,
+    pub(super) is_closed: bool,
+    /// Half its width, px.
+    pub(super) radius: f64,
+    /// Round ends and joins, or square ends and mitred corners.
+    pub(super) cap: Cap,
+}
+
+/// Farthest that the polygon of a round end is from it, px.
+const TOLERANCE: f64 = 0.02;
+/// An arc of a smaller bulge is tried as a line: the farthest that it is from that is half of this times its chord. A guess.
+pub(super) const FLAT: f64 = 0.05;
+/// Farthest that two ends are apart which are tried as one, in radii. A guess: a sharp corner cuts its own middle short.
+const REACH: f64 = 4.0;
+/// One and the cosine of the sharpest turn that has a mitred corner: sharper ones are cut off, as SVG does by its limit of 4.
+const SHARPEST: f64 = 0.125;
+/// Directions that differ by less, rad, need no join.
+const STRAIGHT: f64 = 1e-3;
+
+impl Line {
+    /// Its middle.
+    pub(in crate::trace) fn path(&self) -> Path {
+        self.circle()
+            .map_or_else(|| path_of(&self.knots, self.is_closed), Shape::path)
+    }
+
+    /// The circle that its middle is, if it is two half circles.
+    pub(super) fn circle(&self) -> Option<Shape> {
+        let [a, b] = &self.knots[..] else { return None };
+        let is_half = |knot: &Knot| matches!(knot.segment, Segment::Arc(bulge) if (bulge.abs() - 1.0).abs() < 0.01);
+        let is_one = self.is_closed && is_half(a) && is_half(b);
+        is_one.then(|| Shape::circle(a.at.midpoint(b.at), 0.5 * (b.at - a.at).hypot()))
+    }
+
+    /// The degrees of freedom of its middle, and its width.
+    pub(super) fn freedom(&self) -> usize {
+        match self.circle() {
+            Some(_) => 4,
+            None => self.knots.iter().map(Knot::freedom).sum::<usize>() + 1,
+        }
+    }
+
+    /// Half its width, px.
+    pub(in crate::trace) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Its ends.
+    pub(in crate::trace) fn cap(&self) -> Cap {
+        self.cap
+    }
+
+    /// True if its middle has no curves, and no arcs but those of at most this bulge.
+    pub(super) fn is_within(&self, most: f64) -> bool {
+        let mut own = self.knots.iter().take(self.segments());
+        own.all(|knot| match knot.segment {
+            Segment::Line | Segment::Along(_) => true,
+            Segment::Arc(bulge) => bulge.abs() < most,
+            Segment::Cubic(_) => false,
+        })
+    }
+
+    /// True if an open line with these vertices would end about where this one does; and of closed ones.
+    pub(super) fn has_ends_of(&self, knots: &[Knot]) -> bool {
+        let last = |knots: &[Knot]| knots[knots.len() - 1];
+        let is_near = |a: Knot, b: Knot| (a.at - b.at).hypot() < NEARLY && !b.is_smooth;
+        let are_near = is_near(self.knots[0], knots[0]) && is_near(last(&self.knots), last(knots));
+        self.is_closed || (are_near && last(knots).segment == Segment::Line)
+    }
+
+    /// The lines that this one and another one are together, if ends of both are near each other: they meet in a corner there.
+    pub(super) fn joined_with(&self, other: &Self) -> Vec<Self> {
+        if self.is_closed || other.is_closed {
+            return Vec::new();
+        }
+        let mut found = Vec::new();
+        for first in [self.clone(), self.reversed()] {
+            for second in [other.clone(), other.reversed()] {
+                let (a, b) = (first.knots.len(), &second.knots);
+                let [end, start] = [first.knots[a - 1].at, b[0].at];
+                let most = REACH * self.radius.max(other.radius);
+                if (start - end).hypot() > most {
+                    continue;
+                }
+                let way = |knots: &[Knot], i: usize| directions(&knots[i], knots[i + 1].at);
+                let [u, v] = [way(&first.knots, a - 2)[1], way(b, 0)[0]].map(unit);
+                let along = (start - end).cross(v) / u.cross(v);
+                let meeting = end + along * u;
+                let is_near = u.cross(v).abs() > 0.1
+                    && (meeting - end).hypot().max((meeting - start).hypot()) < most;
+                let meeting = if is_near {
+                    meeting
+                } else {
+                    end.midpoint(start)
+                };
+                let mut knots = first.knots[..a - 1].to_vec();
+                let mut rest = b.to_vec();
+                rest[0].at = meeting;
+                rest[0].is_smooth = false;
+                knots.extend(rest);
+                found.push(Self {
+                    knots,
+                    ..first.clone()
+                });
+            }
+        }
+        found
+    }
+
+    /// The line in the other direction.
+    fn reversed(&self) -> Self {
+        let mut knots = turned(&self.knots);
+        if !self.is_closed {
+            let last = knots.len() - 1;
+            knots[last].segment = Segment::Line;
+        }
+        Self {
+            knots,
+            ..self.clone()
+        }
+    }
+
+    /// The number of segments of the middle.
+    pub(super) fn segments(&self) -> usize {
+        self.knots.len() - usize::from(!self.is_closed)
+    }
+
+    /// The index of the radius among the unknowns: the last one.
+    pub(super) fn radius_index(&self) -> usize {
+        let own: usize = self
+            .knots
+            .iter()
+            .take(self.segments())
+            .map(|k| k.segment.unknowns())
+            .sum();
+        2 * self.knots.len() + own
+    }
+
+    /// The vertices of its outline, as one ring. That of a closed line goes along one side, and back along the other one.
+    ///
+    /// A side is the middle moved along its normal, which does not change to first order where the middle turns: only the end that a
+    /// normal has in the derivatives is that of the radius.
+    pub(super) fn outline(&self) -> Vec<Vertex> {
+        let segments: Vec<(Vec<Vertex>, Vec<Vec2>)> =
+            (0..self.segments()).map(|i| self.middle(i)).collect();
+        let radius = (self.radius, self.radius_index());
+        let mut outline = Vec::new();
+        // 1. The side to the left, seen with y pointing down; 2. the end; 3. the other side, backwards; 4. the start.
+        for side in [-1.0, 1.0] {
+            let mut places: Vec<Vertex> = Vec::new();
+            for (i, (middle, ways)) in segments.iter().enumerate() {
+                let before = match i {
+                    0 => segments.last().filter(|_| self.is_closed),
+                    _ => Some(&segments[i - 1]),
+                };
+                if let Some((_, before)) = before {
+                    let ways = [before[before.len() - 1], ways[0]];
+                    places.extend(self.join(&middle[0], ways, side, radius));
+                }
+                let sides = middle.iter().zip(ways);
+                places.extend(sides.map(|(at, way)| at.moved(side * normal(*way), radius)));
+            }
+            if self.is_closed {
+                places.extend(places.first().copied());
+            }
+            if side > 0.0 {
+                places.reverse();
+            }
+            outline.extend(places);
+            if !self.is_closed {
+                let k = if side < 0.0 { segments.len() - 1 } else { 0 };
+                let (middle, ways) = &segments[k];
+                let at = if side < 0.0 { middle.len() - 1 } else { 0 };
+                // Out of the line there.
+                let way = -side * ways[at];
+                outline.extend(self.end(&middle[at], way, radius));
+            }
+        }
+        outline
+    }
+
+    /// The polyline of a segment's middle and its directions.
+    fn middle(&self, i: usize) -> (Vec<Vertex>, Vec<Vec2>) {
+        let own: usize = self
+            .knots
+            .iter()
+            .take(i)
+            .map(|k| k.segment.unknowns())
+            .sum();
+        let vertices = polyline(&self.knots, i, 2 * self.knots.len() + own);
+        let to = self.knots[(i + 1) % self.knots.len()].at;
+        let [start, end] = directions(&self.knots[i], to).map(unit);
+        let last = vertices.len() - 1;
+        let way = |k: usize| match k {
+            0 => start,
+            k if k == last => end,
+            k => unit(vertices[k + 1].at - vertices[k - 1].at),
+        };
+        let ways = (0..=last).map(way).collect();
+        (vertices, ways)
+    }
+
+    /// What joins two segments on one side, between their ends there.
+    fn join(&self, at: &Vertex, [a, b]: [Vec2; 2], side: f64, radius: (f64, usize)) -> Vec<Vertex> {
+        let angle = 2.0 * math::atan(a.cross(b) / (1.0 + a.dot(b)).max(1e-9));
+        if angle.abs() < STRAIGHT {
+            return Vec::new();
+        }
+        // On the inner side both go to the middle, so that each is whole: where they overlap, they cover twice.
+        if angle * side > 0.0 {
+            return vec![*at];
+        }
+        let [m, n] = [a, b].map(|way| side * normal(way));
+        match self.cap {
+            Cap::Round => fan(at, m, angle, radius),
+            Cap::Butt => vec![at.moved((m + n) / (1.0 + m.dot(n)).max(SHARPEST), radius)],
+        }
+    }
+
+    /// The end of the line in a direction, from its left to its right.
+    fn end(&self, at: &Vertex, way: Vec2, radius: (f64, usize)) -> Vec<Vertex> {
+        match self.cap {
+            Cap::Round => fan(at, -normal(way), PI, radius),
+            Cap::Butt => Vec::new(),
+        }
+    }
+}
+
+/// Vertices of the circle around a place, from one direction on, without both ends.
+fn fan(at: &Vertex, from: Vec2, angle: f64, radius: (f64, usize)) -> Vec<Vertex> {
+    let step = (8.0 * TOLERANCE / radius.0.max(TOLERANCE)).sqrt();
+    let count = (angle.abs() / step).ceil().max(2.0) as usize;
+    let place = |k: usize| {
+        let (sin, cos) = math::sin_cos(angle * k as f64 / count as f64);
+        let out = Vec2::new(cos * from.x - sin * from.y, sin * from.x + cos * from.y);
+        at.moved(out, radius)
+    };
+    (1..count).map(place).collect()
+}
+
+/// The normal to the right of a direction, seen with y pointing down.
+fn normal(way: Vec2) -> Vec2 {
+    Vec2::new(-way.y, way.x)
+}
+
+fn unit(way: Vec2) -> Vec2 {
+    way / way.hypot().max(1e-12)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::coverage::{Band, Coverage, Page};
+    use super::super::curve::Ring;
+    use super::*;
+    use crate::math::Point;
+
+    fn knot(x: f64, y: f64) -> Knot {
+        Knot {
+            at: Point::new(x, y),
+            segment: Segment::Line,
+            is_smooth: false,
+        }
+    }
+
+    /// The distance of a place from a polyline.
+    fn distance(p: Point, places: &[Point]) -> f64 {
+        let lines = places
+            .windows(2)
+            .map(|ends| kurbo::Line::new(ends[0], ends[1]));
+        let squares =
+            lines.map(|line| kurbo::ParamCurveNearest::nearest(&line, p, 0.0).distance_sq);
+        squares.fold(f64::INFINITY, f64::min).sqrt()
+    }
+
+    #[test]
+    fn a_line_with_round_corners_covers_what_is_near_its_middle() {
+        let page = Page {
+            origin: [0; 2],
+            width: 60,
+            height: 60,
+        };
+        // A sharp corner to each side.
+        for corner in [[50.0, 20.3], [12.1, 14.2]] {
+            let places = [[10.2, 40.7], corner, [15.4, 12.9]].map(|[x, y]| Point::new(x, y));
+            let line = Line {
+                knots: places.map(|p| knot(p.x, p.y)).to_vec(),
+                is_closed: false,
+                radius: 4.2,
+                cap: Cap::Round,
+            };
+            let ring = Ring::Line(line);
+            let band = Band::around(&ring, page);
+            let shares = Coverage::of(&ring, &band).shares();
+            for ([x, y], share) in band.places().zip(shares) {
+                const STEPS: i32 = 16;
+                let at = |k: i32, i: i32| f64::from(k) + (f64::from(i) + 0.5) / f64::from(STEPS);
+                let inside = (0..STEPS * STEPS).filter(|k| {
+                    let p = Point::new(at(x, k % STEPS), at(y, k / STEPS));
+                    distance(p, &places) < 4.2
+                });
+                let expected = inside.count() as f64 / f64::from(STEPS * STEPS);
+                assert!(
+                    (share - expected).abs() < 0.08,
+                    "{x},{y}: {share} {expected}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,681 @@
+//! Lines of one width along middles that were traced.
+//!
+//! The integral of the shares across a line is its width, and their mean is its middle, whatever the filter is.
+
+use std::collections::BTreeSet;
+use std::f64::consts::FRAC_PI_4;
+
+use super::super::contour::Field;
+use super::coverage::{Band, Coverage};
+use super::curve::Ring;
+use super::describe::{self, PRICE, Sample, corner};
+use super::edits;
+use super::line::{FLAT, Line};
+use super::refine::{self, Target};
+use super::segment::{Knot, Segment};
+use super::shapes;
+use super::{Shares, whole};
+use crate::math::{self, Point, Vec2, median};
+use crate::scene::Cap;
+
+/// Standard deviation of the middle that a column tells in a clean picture, px: that of an edge.
+const CLEAN: f64 = 0.03;
+/// Deviations with which descriptions are tried, in units of that.
+const DOUBTS: [f64; 2] = [1.0, 2.5];
+/// Farthest that a line's width in a column may be from its own: px, and in units of it. Where it is farther, something else is there,
+/// or the line ends. A guess.
+const ODD: [f64; 2] = [0.3, 0.1];
+/// Rounds of refining lines that cross.
+const ROUNDS: usize = 2;
+
+/// The middle of a line, as it was traced.
+pub(in crate::trace) struct Middle {
+    /// Places along it, px.
+    pub(in crate::trace) places: Vec<Point>,
+    pub(in crate::trace) is_closed: bool,
+    /// About half its width, px.
+    pub(in crate::trace) radius: f64,
+}
+
+/// Lines along some middles that cover what `shares` tell, and the length of the description of the page by them; `None` if that will not
+/// become shorter than `most`.
+pub(super) fn lines(
+    field: &Field,
+    shares: &Shares<'_>,
+    middles: &[Middle],
+    most: f64,
+) -> Option<(Vec<Line>, f64)> {
+    // 1. Each by itself.
+    let described = middles
+        .iter()
+        .map(|middle| described(field, shares, middle));
+    let described: Vec<Vec<Line>> = described.collect();
+    if described.iter().any(Vec::is_empty) {
+        return None;
+    }
+    let mut lines: Vec<Line> = described.iter().map(|rivals| rivals[0].clone()).collect();
+    // 2. On the pixels that no other one touches: the nearest of each, then better ones.
+    for i in 0..lines.len() {
+        let target = target(shares, &lines, i);
+        let settled = described[i].iter().map(|line| settled(line, &target));
+        if let Some((_, best)) = settled.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            lines[i] = best;
+        }
+    }
+    if shares.length_of_lines(&lines) > HOPELESS[0] * most + HOPELESS[1] {
+        return None;
+    }
+    for _ in 0..ROUNDS {
+        for i in 0..lines.len() {
+            lines[i] = improved(&lines[i], &target(shares, &lines, i)).1;
+        }
+    }
+    if shares.length_of_lines(&lines) > LOST * most {
+        return None;
+    }
+    // 3. Those that are one.
+    Some(joined(shares, lines))
+}
+
+/// Lines that are so many times as long as a rival description, and so many nats besides, before any edit do not become shorter than that.
+/// Of those that did, of 79 icons and 8 plans, the most is 31 times, and 900.
+const HOPELESS: [f64; 2] = [20.0, 1000.0];
+/// As [`HOPELESS`], times as long before lines are joined. The most is 2.
+const LOST: f64 = 3.0;
+
+/// Refines lines as they are.
+pub(super) fn settle(shares: &Shares<'_>, lines: &mut [Line]) {
+    for i in 0..lines.len() {
+        lines[i] = settled(&lines[i], &target(shares, lines, i)).1;
+    }
+}
+
+/// The line near this one for which the description is shortest, and the length of that. What cannot become shorter than `most` is given
+/// up. Of a line after an edit, what is near that moves.
+fn refined(Changed { line, near }: Changed, target: &Target, most: f64) -> (f64, Line) {
+    let count = line.knots.len();
+    let around = |i: usize| (0..2 * NEAR + 1).map(move |d| (i + count * NEAR + d - NEAR) % count);
+    let free: BTreeSet<usize> = match near {
+        None => (0..count).collect(),
+        Some(i) => around(i).collect(),
+    };
+    let free: Vec<usize> = free.into_iter().collect();
+    let ring = Ring::Line(line.clone());
+    let price = PRICE * ring.freedom();
+    let (ring, chi2) = refine::refined(&ring, &free, target, ITERATIONS, 2.0 * (most - price));
+    match ring {
+        Ring::Line(refined) => (0.5 * chi2 + price, refined),
+        _ => (f64::INFINITY, line),
+    }
+}
+
+/// As [`refined`], the whole line.
+fn settled(line: &Line, target: &Target) -> (f64, Line) {
+    let line = line.clone();
+    refined(Changed { line, near: None }, target, f64::INFINITY)
+}
+
+/// A share above which nothing else in a pixel is seen.
+const COVERED: f64 = 0.98;
+
+/// What line `i` of several is to cover beside the others.
+fn target(shares: &Shares<'_>, lines: &[Line], i: usize) -> Target {
+    // Ends and corners may be some way off: bands of 6 px side by side, as wide as the line on each side.
+    let own = &lines[i];
+    let count = (own.radius / 6.0).ceil() as i32 + 1;
+    let wide = (-count..=count).filter_map(|k| {
+        let radius = own.radius + 6.0 * f64::from(k);
+        (k != 0 && radius > 0.0).then(|| {
+            Ring::Line(Line {
+                radius,
+                ..own.clone()
+            })
+        })
+    });
+    let wide: Vec<Ring> = wide.collect();
+    let wide: Vec<&Ring> = wide.iter().collect();
+    let mut target = shares.target(whole(&Ring::Line(own.clone()), &wide, shares.page));
+    for (_, other) in lines.iter().enumerate().filter(|&(k, _)| k != i) {
+        let other = Ring::Line(other.clone());
+        let band = Band::around(&other, shares.page);
+        let covered = Coverage::of(&other, &band).shares();
+        for (at, share) in band.places().zip(covered) {
+            // Of a pixel, the others may cover what this one does, or the rest: what is left for it lies in between.
+            let share = share.max(0.0);
+            if let Some(k) = target.band.index_of(at) {
+                target.shares[k] -= 0.5 * share;
+                target.slacks[k] += 0.5 * share;
+                if share > COVERED {
+                    target.sigmas[k] = f64::INFINITY;
+                }
+            }
+        }
+    }
+    target
+}
+
+/// Lines without those that do not pay, of which those are one whose ends are near each other, where that is shorter, and the length
+/// of their description.
+fn joined(shares: &Shares<'_>, mut lines: Vec<Line>) -> (Vec<Line>, f64) {
+    let length_of = |lines: &[Line]| shares.length_of_lines(lines);
+    let mut length = length_of(&lines);
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    'all: loop {
+        for i in 0..lines.len() {
+            let mut fewer = lines.clone();
+            fewer.remove(i);
+            let shorter = length_of(&fewer);
+            if !fewer.is_empty() && shorter < length {
+                (lines, length) = (fewer, shorter);
+                pairs.clear();
+                continue 'all;
+            }
+            for k in i + 1..lines.len() {
+                if pairs.contains(&[i, k]) {
+                    continue;
+                }
+                for line in lines[i].joined_with(&lines[k]) {
+                    let mut fewer = lines.clone();
+                    fewer.remove(k);
+                    fewer[i] = line;
+                    let target = target(shares, &fewer, i);
+                    fewer[i] = settled(&fewer[i], &target).1;
+                    if length_of(&fewer) > length + JOINED * PRICE {
+                        continue;
+                    }
+                    fewer[i] = improved(&fewer[i], &target).1;
+                    let shorter = length_of(&fewer);
+                    if shorter < length {
+                        (lines, length) = (fewer, shorter);
+                        pairs.clear();
+                        continue 'all;
+                    }
+                }
+                pairs.push([i, k]);
+            }
+        }
+        return (lines, length);
+    }
+}
+
+/// Lines that are joined may be longer by so many prices of a number before any edit. A guess.
+const JOINED: f64 = 10.0;
+
+/// The line near this one with the shortest description, and the length of that.
+fn improved(line: &Line, target: &Target) -> (f64, Line) {
+    let mut best = settled(line, target);
+    loop {
+        let before = best.0;
+        for changed in edits(&best.1, &off(&best.1, target)) {
+            let changed = refined(changed, target, best.0);
+            if changed.0 < best.0 {
+                best = changed;
+            }
+        }
+        if best.0 >= before {
+            return best;
+        }
+        let settled = settled(&best.1, target);
+        if settled.0 < best.0 {
+            best = settled;
+        }
+    }
+}
+
+/// True for each segment of a line that more numbers may mend: half of χ² of the pixels that its edges touch is as large as the price
+/// of one.
+fn off(line: &Line, target: &Target) -> Vec<bool> {
+    let covered = Coverage::of(&Ring::Line(line.clone()), &target.band).shares();
+    let count = line.knots.len();
+    let is_off = |i: usize| {
+        let part = Ring::Line(Line {
+            knots: vec![line.knots[i], corner(line.knots[(i + 1) % count].at)],
+            is_closed: false,
+            ..line.clone()
+        });
+        let touched = Coverage::of(&part, &target.band).touched().into_iter();
+        let errors = touched.map(|pixel| target.error(pixel, covered[pixel]));
+        let off = 0.5 * errors.map(|error| error * error).sum::<f64>();
+        (PRICE..FAR * PRICE).contains(&off)
+    };
+    (0..line.segments()).map(is_off).collect()
+}
+
+/// A line after an edit, and the vertex near which it is: of the whole line, if none.
+struct Changed {
+    line: Line,
+    near: Option<usize>,
+}
+
+/// A segment that is farther off what is seen, in prices of numbers, is another one: more numbers do not mend it. A guess.
+const FAR: f64 = 60.0;
+/// Vertices before and behind an edit that settle with it.
+const NEAR: usize = 2;
+/// Iterations in which a line settles.
+const ITERATIONS: usize = 12;
+
+/// Lines with other ends, with fewer numbers, and with more in segments that are off.
+fn edits(line: &Line, is_off: &[bool]) -> Vec<Changed> {
+    let count = line.knots.len();
+    let at = |knots: Vec<Knot>, i: usize| Changed {
+        near: Some(i.min(knots.len() - 1)),
+        line: Line {
+            knots,
+            ..line.clone()
+        },
+    };
+    let mut edits = Vec::new();
+    // 1. Square ends and mitred corners are those of straight lines.
+    if line.cap == Cap::Butt || line.is_within(FLAT) {
+        edits.push(Changed {
+            line: with_other_ends(line),
+            near: None,
+        });
+    }
+    for i in 0..count {
+        // 2. Those of a ring, as far as they leave the ends of an open line where they are.
+        let mut own = Vec::new();
+        if is_off.get(i) == Some(&true) {
+            own = edits::longer(&line.knots, i);
+        }
+        if i < line.segments() {
+            own.extend(edits::shorter(&line.knots, i));
+        }
+        own.retain(|edit| line.has_ends_of(&edit.knots));
+        edits.extend(own.into_iter().map(|edit| at(edit.knots, i)));
+        // 3. Without an end, or a segment, whose neighbours go on until they meet.
+        if !line.is_closed && (i == 0 || i + 1 == count) && count > 2 {
+            let mut knots = line.knots.clone();
+            knots.remove(i);
+            knots[0].is_smooth = false;
+            // Behind the last vertex is nothing.
+            let last = corner(knots[count - 2].at);
+            knots[count - 2] = last;
+            edits.push(at(knots, i));
+        }
+        edits.extend(without_segment(&line.knots, i, line.is_closed).map(|knots| at(knots, i)));
+    }
+    // Mitred corners are those of straight lines.
+    edits.retain(|Changed { line, .. }| line.cap == Cap::Round || line.is_within(0.0));
+    edits
+}
+
+/// The vertices with one in the place of the segment behind vertex `i`: where its neighbours meet, which are straight.
+fn without_segment(knots: &[Knot], i: usize, is_closed: bool) -> Option<Vec<Knot>> {
+    let count = knots.len();
+    if count < 4 || (!is_closed && (i == 0 || i + 2 >= count)) {
+        return None;
+    }
+    let [before, next, after] = [i + count - 1, i + 1, i + 2].map(|k| k % count);
+    let is_line = |k: usize| match knots[k].segment {
+        Segment::Line | Segment::Along(_) => true,
+        Segment::Arc(bulge) => bulge.abs() < FLAT,
+        Segment::Cubic(_) => false,
+    };
+    let [p, q] = [knots[before].at, knots[next].at];
+    let [u, v] = [knots[i].at - p, knots[after].at - q];
+    let cross = u.cross(v);
+    let along = (q - p).cross(v) / cross;
+    let is_near = (along - 1.0).abs() * u.hypot() < 4.0 * (knots[next].at - knots[i].at).hypot();
+    if !is_line(before) || !is_line(next) || cross.abs() < 1e-9 || !is_near {
+        return None;
+    }
+    let mut knots = knots.to_vec();
+    knots[next].at = p + along * u;
+    for k in [before, next] {
+        if let Segment::Arc(_) = knots[k].segment {
+            knots[k].segment = Segment::Line;
+        }
+    }
+    knots[next].is_smooth = false;
+    knots.remove(i);
+    Some(knots)
+}
+
+/// The line with the other kind of ends, which covers as much.
+fn with_other_ends(line: &Line) -> Line {
+    // A half disc covers ½πr², as much as a rectangle 2r wide and ¼πr long.
+    let beyond = FRAC_PI_4 * line.radius;
+    let (cap, beyond) = match line.cap {
+        Cap::Round => (Cap::Butt, beyond),
+        Cap::Butt => (Cap::Round, -beyond),
+    };
+    let mut knots = line.knots.clone();
+    if cap == Cap::Butt {
+        knots
+            .iter_mut()
+            .for_each(|knot| knot.segment = Segment::Line);
+    }
+    if !line.is_closed {
+        let last = knots.len() - 1;
+        for (end, inner) in [(0, 1), (last, last - 1)] {
+            let way = line.knots[end].at - line.knots[inner].at;
+            knots[end].at += beyond / way.hypot().max(1e-9) * way;
+        }
+    }
+    Line {
+        cap,
+        knots,
+        ..line.clone()
+    }
+}
+
+/// The lines along one middle: the cheapest description, and shapes near it.
+fn described(field: &Field, shares: &Shares<'_>, middle: &Middle) -> Vec<Line> {
+    let (samples, radius) = samples(field, shares, middle);
+    let shapes = match middle.is_closed {
+        true => shapes::near(&samples, true),
+        false => Vec::new(),
+    };
+    let shapes = shapes.iter().map(Ring::segmented);
+    let own: Vec<Vec<Knot>> = match samples.len() {
+        0..5 => {
+            let ends = middle.places.first().zip(middle.places.last());
+            ends.map(|(a, b)| [*a, *b].map(corner).to_vec())
+                .into_iter()
+                .collect()
+        }
+        // How much renderers are off depends on the curve; pixels judge.
+        _ => DOUBTS
+            .iter()
+            .filter_map(|doubt| {
+                let samples = samples.iter().map(|sample| Sample {
+                    sigma: doubt * sample.sigma,
+                    ..*sample
+                });
+                describe::line(&samples.collect::<Vec<_>>(), middle.is_closed)
+            })
+            .collect(),
+    };
+    let line = |knots: Vec<Knot>| Line {
+        knots,
+        is_closed: middle.is_closed,
+        radius,
+        cap: Cap::Round,
+    };
+    own.into_iter()
+        .chain(shapes)
+        .filter(|knots| knots.len() > 1)
+        .map(line)
+        .collect()
+}
+
+/// Samples along a middle about a px apart, by profiles across it, and half the width that they tell.
+fn samples(field: &Field, shares: &Shares<'_>, middle: &Middle) -> (Vec<Sample>, f64) {
+    let mut profiles: Vec<Profile> = Vec::new();
+    let mut left = 0.5;
+    for ends in middle.places.windows(2) {
+        let way = ends[1] - ends[0];
+        let length = way.hypot();
+        while left < length {
+            let at = ends[0] + left / length * way;
+            profiles.push(Profile::across(
+                field,
+                shares,
+                (at, way / length),
+                middle.radius,
+            ));
+            left += 1.0;
+        }
+        left -= length;
+    }
+    // At a corner profiles tell the middle of both of its sides.
+    let corners = corners(middle);
+    let is_cut = |p: Point| {
+        corners
+            .iter()
+            .position(|corner| (*corner - p).hypot() < 1.2 * middle.radius)
+    };
+    let width = median(profiles.iter().filter_map(|p| Some(p.width()? as f32))).map(f64::from);
+    let width = width.unwrap_or(2.0 * middle.radius);
+    let found = profiles.iter().filter_map(|profile| profile.sample(width));
+    let mut samples: Vec<Sample> = Vec::new();
+    let mut last = None;
+    let mut gaps = 0;
+    for sample in found {
+        let cut = is_cut(sample.at);
+        match cut {
+            None => samples.push(sample),
+            Some(corner) if last != cut => {
+                samples.push(Sample {
+                    at: corners[corner],
+                    sigma: f64::INFINITY,
+                    gap: Some(gaps),
+                });
+                gaps += 1;
+            }
+            Some(_) => {}
+        }
+        last = cut;
+    }
+    (samples, 0.5 * width)
+}
+
+/// The corners of a middle: it turns there by more than a radian within its width.
+fn corners(middle: &Middle) -> Vec<Point> {
+    let places = &middle.places;
+    // Places at even steps, and the directions between those half a width apart.
+    let mut even: Vec<Point> = Vec::new();
+    let step = (0.1 * middle.radius).max(0.1);
+    let mut left = 0.0;
+    for ends in places.windows(2) {
+        let way = ends[1] - ends[0];
+        let length = way.hypot();
+        while left < length {
+            even.push(ends[0] + left / length.max(1e-9) * way);
+            left += step;
+        }
+        left -= length;
+    }
+    let reach = (0.6 * middle.radius / step).round().max(1.0) as usize;
+    let turn = |i: usize| {
+        let far = |k: isize| {
+            let at = i as isize + k;
+            match middle.is_closed {
+                true => Some(at.rem_euclid(even.len() as isize) as usize),
+                false => usize::try_from(at).ok().filter(|at| *at < even.len()),
+            }
+        };
+        let reach = reach as isize;
+        let (Some(a), Some(b)) = (far(-2 * reach), far(2 * reach)) else {
+            return 0.0;
+        };
+        let [u, v] = [even[i] - even[a], even[b] - even[i]];
+        2.0 * math::atan(u.cross(v) / (u.hypot() * v.hypot() + u.dot(v)).max(1e-9))
+    };
+    let turns: Vec<f64> = (0..even.len()).map(|i| turn(i).abs()).collect();
+    let is_most = |i: &usize| {
+        let around = i.saturating_sub(2 * reach)..(i + 2 * reach + 1).min(turns.len());
+        turns[*i] > SHARP
+            && around
+                .clone()
+                .all(|k| turns[k] < turns[*i] || (turns[k] == turns[*i] && k >= *i))
+    };
+    (0..even.len()).filter(is_most).map(|i| even[i]).collect()
+}
+
+/// Least angle of a corner, rad.
+const SHARP: f64 = 0.8;
+
+/// What a line covers across a direction.
+struct Profile {
+    at: Point,
+    normal: Vec2,
+    /// How far it goes from there against the normal and along it, px; `None` if that is not known.
+    sides: [Option<f64>; 2],
+    doubt: f64,
+}
+
+impl Profile {
+    fn across(field: &Field, shares: &Shares<'_>, (at, way): (Point, Vec2), radius: f64) -> Self {
+        const STEP: f64 = 0.25;
+        let normal = Vec2::new(-way.y, way.x);
+        let place = |k: i32| at + f64::from(k) * STEP * normal;
+        let pixel = |p: Point| [p.x.floor() as i32, p.y.floor() as i32];
+        let doubt = shares.doubt(pixel(at));
+        let flat = (2.0 * doubt).clamp(0.01, 0.1);
+        let reach = ((2.0 * radius + 3.0) / STEP).ceil() as i32;
+        let share = |k: i32| f64::from(field.at(math::xy(place(k))));
+        let side = |step: i32| {
+            let end = (1..=reach).find(|&k| share(k * step) < flat)?;
+            let is_known = (0..=end).all(|k| shares.is_known(pixel(place(k * step))));
+            let covered = 0.5 * share(0) + (1..=end).map(|k| share(k * step)).sum::<f64>();
+            is_known.then_some(covered * STEP)
+        };
+        Self {
+            at,
+            normal,
+            sides: [side(-1), side(1)],
+            doubt,
+        }
+    }
+
+    fn width(&self) -> Option<f64> {
+        let width = self.sides[0]? + self.sides[1]?;
+        Some(width).filter(|width| *width >= 0.2)
+    }
+
+    /// The middle of a line that is so wide. Where one of its edges lies beyond the page, the other one tells.
+    fn sample(&self, width: f64) -> Option<Sample> {
+        let is_odd = |own: f64| (own - width).abs() > ODD[0] + ODD[1] * width;
+        let (along, edges) = match self.sides {
+            [Some(before), Some(behind)] if !is_odd(before + behind) => {
+                (0.5 * (behind - before), 2.0)
+            }
+            [Some(before), None] => (0.5 * width - before, 1.0),
+            [None, Some(behind)] => (behind - 0.5 * width, 1.0),
+            _ => return None,
+        };
+        let sigma = math::hypot(CLEAN, self.doubt / (0.5 * edges * width).max(1.0).sqrt());
+        Some(Sample {
+            at: self.at + along * self.normal,
+            sigma,
+            gap: None,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::coverage::Page;
+    use super::*;
+
+    /// The lines that are found along a middle on a page of 64 px that shows this line.
+    fn found(truth: &Line, middle: &[[f64; 2]]) -> Vec<Line> {
+        let page = Page {
+            origin: [0; 2],
+            width: 64,
+            height: 64,
+        };
+        let ring = Ring::Line(truth.clone());
+        let band = Band::around(&ring, page);
+        let mut values = vec![0.0; 64 * 64];
+        for (at, share) in band.places().zip(Coverage::of(&ring, &band).shares()) {
+            values[page.index(at)] = share;
+        }
+        let field = Field {
+            origin: page.origin,
+            width: page.width,
+            values: values.iter().map(|v| *v as f32).collect(),
+        };
+        let shares = Shares {
+            page,
+            values,
+            doubts: &[0.05; 64 * 64],
+            factor: 1.0,
+            slack: 0.0,
+        };
+        let middle = Middle {
+            places: middle.iter().map(|[x, y]| Point::new(*x, *y)).collect(),
+            is_closed: truth.is_closed,
+            radius: 3.0,
+        };
+        lines(&field, &shares, &[middle], f64::INFINITY).unwrap().0
+    }
+
+    fn knot([x, y]: [f64; 2], segment: Segment, is_smooth: bool) -> Knot {
+        Knot {
+            at: Point::new(x, y),
+            segment,
+            is_smooth,
+        }
+    }
+
+    fn assert_found(truth: &Line, middle: &[[f64; 2]]) {
+        let found = found(truth, middle);
+        let [line] = &found[..] else {
+            panic!("{found:?}")
+        };
+        assert_eq!(line.knots.len(), truth.knots.len(), "{line:?}");
+        assert!((line.radius - truth.radius).abs() < 0.02, "{line:?}");
+        for (found, expected) in line.knots.iter().zip(&truth.knots) {
+            assert!((found.at - expected.at).hypot() < 0.05, "{line:?}");
+        }
+    }
+
+    #[test]
+    fn a_hook_is_two_lines_and_an_arc_between_them() {
+        let hook = Line {
+            knots: vec![
+                knot([12.3, 50.2], Segment::Along(1), false),
+                knot([12.3, 28.4], Segment::Arc(1.0), true),
+                knot([44.9, 28.4], Segment::Along(1), true),
+                knot([44.9, 46.1], Segment::Line, false),
+            ],
+            is_closed: false,
+            radius: 3.2,
+            cap: Cap::Round,
+        };
+        let middle = [
+            [12.0, 49.0],
+            [12.5, 28.0],
+            [17.0, 16.5],
+            [28.5, 12.5],
+            [40.5, 17.0],
+            [45.0, 28.5],
+            [44.5, 45.5],
+        ];
+        assert_found(&hook, &middle);
+    }
+
+    #[test]
+    fn a_line_that_the_page_cuts_lengthwise_is_as_wide_as_its_rest() {
+        let corner = Line {
+            knots: vec![
+                knot([20.2, 12.7], Segment::Line, false),
+                knot([61.8, 20.3], Segment::Line, false),
+                knot([61.8, 55.4], Segment::Line, false),
+            ],
+            is_closed: false,
+            radius: 4.1,
+            cap: Cap::Round,
+        };
+        let found = found(&corner, &[[21.0, 13.0], [61.0, 20.0], [60.5, 55.0]]);
+        let [line] = &found[..] else {
+            panic!("{found:?}")
+        };
+        assert_eq!(line.knots.len(), 3, "{line:?}");
+        let [a, b] = [&line.knots[1], &line.knots[2]];
+        assert!(
+            (a.at.x - 61.8).abs() < 0.1 && (b.at.x - 61.8).abs() < 0.1,
+            "{line:?}"
+        );
+    }
+
+    #[test]
+    fn square_ends_and_a_mitred_corner_are_told_from_round_ones() {
+        let chevron = Line {
+            knots: vec![
+                knot([10.3, 12.4], Segment::Line, false),
+                knot([30.2, 48.1], Segment::Line, false),
+                knot([52.7, 15.2], Segment::Line, false),
+            ],
+            is_closed: false,
+            radius: 3.5,
+            cap: Cap::Butt,
+        };
+        assert_found(&chevron, &[[11.5, 14.5], [30.0, 47.0], [51.0, 17.0]]);
+        let found = found(&chevron, &[[11.5, 14.5], [30.0, 47.0], [51.0, 17.0]]);
+        assert_eq!(found[0].cap, Cap::Butt);
+    }
+}
