@@ -4,7 +4,8 @@ use std::fs;
 
 use crate::support::{committed, drawn, picture, rendered};
 use strokefit::fit::{Background, Config};
-use strokefit::scene::{Cap, Mark, Marks, Path, PathPoint, Scene, Shape, Stroke};
+use strokefit::math::Point;
+use strokefit::scene::{Area, Cap, Mark, Marks, Path, PathPoint, Scene, Shape, Stroke};
 use strokefit::svg::{self, Group, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -232,13 +233,52 @@ fn shapes_that_overlap_are_whole() {
     }
 }
 
+/// What is partly hidden goes on beneath what hides it, so that nothing of the page is seen between both.
+#[test]
+fn a_wall_goes_on_beneath_its_roof() {
+    let house = r##"<path d="M30.4 50.2H110.7V112.3H30.4Z" fill="#e8b04a"/><path d="M14.2 58.6L70.3 16.4L126.9 58.6Z" fill="#a03020"/><circle cx="104.3" cy="96.8" r="17.4" fill="#3a7d44"/>"##;
+    let (scene, text) = fitted(house);
+    assert_eq!(scene.areas().count(), 3, "{text}");
+    assert_eq!(circles(&scene), 1, "{text}");
+    let wall = scene.areas().find(|area| area.color[1] > 0.6).unwrap();
+    let [top, bottom] = extents(wall, |p| p.y);
+    let [left, right] = extents(wall, |p| p.x);
+    assert!(
+        (left - 30.4).abs() < 0.1 && (bottom - 112.3).abs() < 0.1,
+        "{text}"
+    );
+    // Both sides are hidden above, the right one below, too.
+    assert!((0.5..25.0).contains(&(58.6 - top)), "{top} {text}");
+    assert!((right - 110.7).abs() < 0.1, "{right} {text}");
+}
+
+/// The least and the largest coordinate of the points of an area.
+fn extents(area: &Area, along: impl Fn(Point) -> f64) -> [f64; 2] {
+    let points = area.rings.iter().flat_map(|ring| ring.points());
+    let places: Vec<f64> = points.map(|point| along(point.at)).collect();
+    let least = places.iter().copied().fold(f64::INFINITY, f64::min);
+    [least, places.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// Where two edges coincide, a renderer lets a quarter of what is below the upper one through. That is no thing of its own.
+#[test]
+fn a_fringe_between_edges_that_coincide_is_nothing() {
+    let bin = r##"<svg xmlns="http://www.w3.org/2000/svg" width="160" height="130"><path d="M40.25 30H120.25V120H40.25Z" fill="#3a3a8a"/><path d="M40.25 30H120.25V90H40.25Z" fill="#d1d3d3"/></svg>"##;
+    let picture = verify::render(bin, Size::Scale(1.0), None).unwrap();
+    let text = drawn(&picture, &Config::default()).svg();
+    let scene = svg::read(&text).unwrap();
+    let marks = [scene.areas().count(), scene.len()];
+    assert_eq!(marks, [2, 2], "{text}");
+}
+
 /// Lines with square ends and mitred corners, as charts and technical drawings have them, are strokes with those.
 #[test]
 fn square_ends_and_mitred_corners_come_back() {
     // The artist's elements, of those the ones that are bands, and dB.
     for (name, most, [least, bands], least_db) in [
         ("chevrons", 5, [5, 5], 55.0),
-        ("menu", 6, [3, 2], 60.0),
+        // Lines of one path are elements of their own.
+        ("menu", 7, [7, 7], 60.0),
         ("frame", 6, [6, 4], 52.0),
         // The dashes are elements of their own.
         ("chart", 27, [24, 20], 46.0),
