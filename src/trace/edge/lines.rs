@@ -204,9 +204,14 @@ const JOINED: f64 = 10.0;
 /// The line near this one with the shortest description, and the length of that.
 fn improved(line: &Line, target: &Target) -> (f64, Line) {
     let mut best = settled(line, target);
+    let mut work = 0;
     loop {
         let before = best.0;
         for changed in edits(&best.1, &off(&best.1, target)) {
+            work += target.shares.len();
+            if work > MOST_WORK {
+                return best;
+            }
             let changed = refined(changed, target, best.0);
             if changed.0 < best.0 {
                 best = changed;
@@ -221,6 +226,9 @@ fn improved(line: &Line, target: &Target) -> (f64, Line) {
         }
     }
 }
+
+/// Most pixels that the edits of a line look at, an edit after the other: about a second. A long wide line in JPEG took 9 s.
+const MOST_WORK: usize = 10_000_000;
 
 /// True for each segment of a line that more numbers may mend: half of χ² of the pixels that its edges touch is as large as the price
 /// of one.
