@@ -118,8 +118,16 @@ fn marks_of(
         let choice = Choice::of(&flat, strokes, pixels);
         match choice.fitted(flat.fills(), &price) {
             Ok(traced) => {
-                let placed = tracing.may_place.then(|| choice.placed(&price));
-                return placed.flatten().unwrap_or(traced);
+                let placed = tracing.may_place.then(|| choice.placed(&price)).flatten();
+                // What strokes draw after a descent is no area because they are not found before it.
+                let areas = |traced: &[Traced]| {
+                    traced
+                        .iter()
+                        .filter(|traced| traced.mark.as_area().is_some())
+                        .count()
+                };
+                let no_more = placed.filter(|placed| areas(placed) <= areas(&traced));
+                return no_more.unwrap_or(traced);
             }
             // What strokes do not draw stays with what it came apart from.
             Err(lines) => {

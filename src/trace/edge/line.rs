@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::segment::{Knot, NEARLY, Segment, Vertex, directions, path_of, polyline, turned};
-use crate::math::{self, Vec2};
+use crate::math::{self, Point, Vec2};
 use crate::scene::{Cap, Path, Shape};
 
 /// A line of one width.
@@ -89,21 +89,9 @@ impl Line {
         for first in [self.clone(), self.reversed()] {
             for second in [other.clone(), other.reversed()] {
                 let (a, b) = (first.knots.len(), &second.knots);
-                let [end, start] = [first.knots[a - 1].at, b[0].at];
                 let most = REACH * self.radius.max(other.radius);
-                if (start - end).hypot() > most {
+                let Some(meeting) = meeting(&first.knots, b, most) else {
                     continue;
-                }
-                let way = |knots: &[Knot], i: usize| directions(&knots[i], knots[i + 1].at);
-                let [u, v] = [way(&first.knots, a - 2)[1], way(b, 0)[0]].map(unit);
-                let along = (start - end).cross(v) / u.cross(v);
-                let meeting = end + along * u;
-                let is_near = u.cross(v).abs() > 0.1
-                    && (meeting - end).hypot().max((meeting - start).hypot()) < most;
-                let meeting = if is_near {
-                    meeting
-                } else {
-                    end.midpoint(start)
                 };
                 let mut knots = first.knots[..a - 1].to_vec();
                 let mut rest = b.to_vec();
@@ -117,6 +105,22 @@ impl Line {
             }
         }
         found
+    }
+
+    /// The closed line that this one is, if its ends are near each other.
+    pub(super) fn closed(&self) -> Option<Self> {
+        let count = self.knots.len();
+        if self.is_closed || count < 4 {
+            return None;
+        }
+        let mut knots = self.knots.clone();
+        knots[0].at = meeting(&knots, &knots, REACH * self.radius)?;
+        knots.truncate(count - 1);
+        Some(Self {
+            knots,
+            is_closed: true,
+            ..self.clone()
+        })
     }
 
     /// The line in the other direction.
@@ -238,6 +242,25 @@ impl Line {
     }
 }
 
+/// Where a line that ends and one that starts meet, if the end and the start are near each other.
+fn meeting(first: &[Knot], second: &[Knot], most: f64) -> Option<Point> {
+    let a = first.len();
+    let [end, start] = [first[a - 1].at, second[0].at];
+    if (start - end).hypot() > most {
+        return None;
+    }
+    let way = |knots: &[Knot], i: usize| directions(&knots[i], knots[i + 1].at);
+    let [u, v] = [way(first, a - 2)[1], way(second, 0)[0]].map(unit);
+    let along = (start - end).cross(v) / u.cross(v);
+    let meeting = end + along * u;
+    let is_near =
+        u.cross(v).abs() > 0.1 && (meeting - end).hypot().max((meeting - start).hypot()) < most;
+    Some(match is_near {
+        true => meeting,
+        false => end.midpoint(start),
+    })
+}
+
 /// Vertices of the circle around a place, from one direction on, without both ends.
 fn fan(at: &Vertex, from: Vec2, angle: f64, radius: (f64, usize)) -> Vec<Vertex> {
     let step = (8.0 * TOLERANCE / radius.0.max(TOLERANCE)).sqrt();
@@ -264,7 +287,6 @@ mod tests {
     use super::super::coverage::{Band, Coverage, Page};
     use super::super::curve::Ring;
     use super::*;
-    use crate::math::Point;
 
     fn knot(x: f64, y: f64) -> Knot {
         Knot {

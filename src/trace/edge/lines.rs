@@ -157,8 +157,16 @@ fn target(shares: &Shares<'_>, lines: &[Line], i: usize) -> Target {
 /// Lines without those that do not pay, of which those are one whose ends are near each other, where that is shorter, and the length
 /// of their description.
 fn joined(shares: &Shares<'_>, mut lines: Vec<Line>) -> (Vec<Line>, f64) {
-    let length_of = |lines: &[Line]| shares.length_of_lines(lines);
+    // Where a line is and how wide counts here, so that fewer lines are shorter.
+    let length_of = |lines: &[Line]| {
+        let places = lines
+            .iter()
+            .map(|line| Ring::Line(line.clone()).free_of_charge());
+        shares.length_of_lines(lines) + PRICE * places.sum::<f64>()
+    };
     let mut length = length_of(&lines);
+    // Lines that win beside outlines as several do so as one.
+    let mut least = shares.length_of_lines(&lines);
     let mut pairs: Vec<[usize; 2]> = Vec::new();
     'all: loop {
         for i in 0..lines.len() {
@@ -166,17 +174,24 @@ fn joined(shares: &Shares<'_>, mut lines: Vec<Line>) -> (Vec<Line>, f64) {
             fewer.remove(i);
             let shorter = length_of(&fewer);
             if !fewer.is_empty() && shorter < length {
+                least = least.min(shares.length_of_lines(&fewer));
                 (lines, length) = (fewer, shorter);
                 pairs.clear();
                 continue 'all;
             }
-            for k in i + 1..lines.len() {
+            for k in i..lines.len() {
                 if pairs.contains(&[i, k]) {
                     continue;
                 }
-                for line in lines[i].joined_with(&lines[k]) {
+                let joined = match k == i {
+                    true => lines[i].closed().into_iter().collect(),
+                    false => lines[i].joined_with(&lines[k]),
+                };
+                for line in joined {
                     let mut fewer = lines.clone();
-                    fewer.remove(k);
+                    if k > i {
+                        fewer.remove(k);
+                    }
                     fewer[i] = line;
                     let target = target(shares, &fewer, i);
                     fewer[i] = settled(&fewer[i], &target).1;
@@ -186,6 +201,7 @@ fn joined(shares: &Shares<'_>, mut lines: Vec<Line>) -> (Vec<Line>, f64) {
                     fewer[i] = improved(&fewer[i], &target).1;
                     let shorter = length_of(&fewer);
                     if shorter < length {
+                        least = least.min(shares.length_of_lines(&fewer));
                         (lines, length) = (fewer, shorter);
                         pairs.clear();
                         continue 'all;
@@ -194,7 +210,7 @@ fn joined(shares: &Shares<'_>, mut lines: Vec<Line>) -> (Vec<Line>, f64) {
                 pairs.push([i, k]);
             }
         }
-        return (lines, length);
+        return (lines, least);
     }
 }
 
@@ -570,6 +586,11 @@ mod tests {
 
     /// The lines that are found along a middle on a page of 64 px that shows this line.
     fn found(truth: &Line, middle: &[[f64; 2]]) -> Vec<Line> {
+        found_along(truth, truth, middle)
+    }
+
+    /// As [`found`], of a middle that is closed as another line is.
+    fn found_along(truth: &Line, traced: &Line, middle: &[[f64; 2]]) -> Vec<Line> {
         let page = Page {
             origin: [0; 2],
             width: 64,
@@ -595,7 +616,7 @@ mod tests {
         };
         let middle = Middle {
             places: middle.iter().map(|[x, y]| Point::new(*x, *y)).collect(),
-            is_closed: truth.is_closed,
+            is_closed: traced.is_closed,
             radius: 3.0,
         };
         lines(&field, &shares, &[middle], f64::INFINITY).unwrap().0
@@ -668,6 +689,33 @@ mod tests {
             (a.at.x - 61.8).abs() < 0.1 && (b.at.x - 61.8).abs() < 0.1,
             "{line:?}"
         );
+    }
+
+    #[test]
+    fn a_triangle_that_was_traced_as_an_open_line_is_closed() {
+        let triangle = Line {
+            knots: vec![
+                knot([12.2, 14.5], Segment::Line, false),
+                knot([50.1, 20.3], Segment::Line, false),
+                knot([26.4, 52.6], Segment::Line, false),
+            ],
+            is_closed: true,
+            radius: 2.8,
+            cap: Cap::Round,
+        };
+        let open = Line {
+            is_closed: false,
+            ..triangle.clone()
+        };
+        let found = found_along(
+            &triangle,
+            &open,
+            &[[12.5, 15.0], [50.0, 20.0], [26.5, 52.5], [12.5, 15.5]],
+        );
+        let [line] = &found[..] else {
+            panic!("{found:?}")
+        };
+        assert!(line.is_closed && line.knots.len() == 3, "{line:?}");
     }
 
     #[test]
