@@ -119,14 +119,10 @@ fn marks_of(
         match choice.fitted(flat.fills(), &price) {
             Ok(traced) => {
                 let placed = tracing.may_place.then(|| choice.placed(&price)).flatten();
-                // What strokes draw after a descent is no area because they are not found before it.
-                let areas = |traced: &[Traced]| {
-                    traced
-                        .iter()
-                        .filter(|traced| traced.mark.as_area().is_some())
-                        .count()
-                };
-                let no_more = placed.filter(|placed| areas(placed) <= areas(&traced));
+                // A drawing of lines stays one where they are not found before a descent.
+                let has_areas =
+                    |traced: &[Traced]| traced.iter().any(|t| t.mark.as_area().is_some());
+                let no_more = placed.filter(|placed| has_areas(&traced) || !has_areas(placed));
                 return no_more.unwrap_or(traced);
             }
             // What strokes do not draw stays with what it came apart from.
