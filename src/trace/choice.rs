@@ -11,7 +11,7 @@ use super::Traced;
 use super::areas::Pixels;
 use super::edge::{Middle, Ring};
 use super::even::{Pen, Shape, WAVERING};
-use super::fill::{Fill, Filled, Flat};
+use super::fill::{Fill, Filled, Flat, Placing};
 use super::gain::coverage;
 use super::parts::{COVERED, Part};
 use super::strokes::TracedStroke;
@@ -68,14 +68,25 @@ impl<'a> Choice<'a> {
         }
     }
 
+    /// True if there is a shape that no stroke has a part of.
+    pub(super) fn has_areas(&self) -> bool {
+        let mut shapes = self.flat.shapes();
+        let is_grouped = |region: &u32| {
+            self.groups
+                .iter()
+                .any(|group| group.regions.contains(region))
+        };
+        shapes.any(|region| !is_grouped(&region))
+    }
+
     /// The marks that draw the picture, in painting order, to be fitted; or lines that came apart from blobs although strokes do not
     /// draw them, each as its shape and its region.
     pub(super) fn fitted(
         &self,
-        fills: Vec<Fill>,
         price: &(impl Fn(&Mark) -> f32 + Sync),
     ) -> Result<Vec<Traced>, Vec<(u32, u32)>> {
         let Self { flat, strokes, .. } = self;
+        let fills = flat.fills();
         let wins = |group: &Group| stroked(group, flat, &fills, strokes, self.pixels, price);
         let pens: Vec<Option<Vec<Pen>>> = self.groups.par_iter().map(wins).collect();
         let has_bands = pens
@@ -110,10 +121,10 @@ impl<'a> Choice<'a> {
         if self.flat.is_apart() {
             return None;
         }
-        let fills = self.flat.placed_fills()?;
-        let lines = |group: &Group| self.lines(group, &fills);
-        let lines: Vec<Option<Vec<Stroke>>> = self.groups.par_iter().map(lines).collect();
-        let mut lines = lines;
+        let placing = self.flat.placing()?;
+        let fills = placing.fills();
+        let lines = |group: &Group| self.lines(group, &placing, &fills);
+        let mut lines: Vec<Option<Vec<Stroke>>> = self.groups.par_iter().map(lines).collect();
         self.keep_pens(&mut lines, &fills);
         let won = lines.iter().map(Option::is_some).collect();
         let chosen = self.chosen(&fills, lines, won, price).ok()?;
@@ -124,7 +135,7 @@ impl<'a> Choice<'a> {
             return None;
         }
         let count = chosen.strokes.iter().flatten().count();
-        let areas = self.flat.placed_areas(&fills, &chosen.is_stroked, count)?;
+        let areas = placing.areas(&fills, &chosen.is_stroked, count)?;
         Some(stacked(chosen.strokes, areas, true)).filter(|marks| !marks.is_empty())
     }
 
@@ -191,7 +202,12 @@ impl<'a> Choice<'a> {
     }
 
     /// The strokes of a group as lines of one width, if these have a shorter description than its regions.
-    fn lines(&self, group: &Group, fills: &[Fill<Ring>]) -> Option<Vec<Stroke>> {
+    fn lines(
+        &self,
+        group: &Group,
+        placing: &Placing<'_>,
+        fills: &[Fill<Ring>],
+    ) -> Option<Vec<Stroke>> {
         let strokes = group.strokes.iter().map(|&i| &self.strokes[i].stroke);
         let strokes: Vec<&Stroke> = strokes.collect();
         if darken(&strokes, self.pixels) {
@@ -213,7 +229,7 @@ impl<'a> Choice<'a> {
             }
         };
         let middles: Vec<Middle> = strokes.iter().map(middle).collect();
-        let lines = self.flat.lines(&own, &middles)?.into_iter();
+        let lines = placing.lines(&own, &middles)?.into_iter();
         let drawn = lines.zip(&strokes).map(|(line, stroke)| Stroke {
             path: line.path(),
             radius: line.radius(),

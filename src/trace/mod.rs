@@ -116,15 +116,16 @@ fn marks_of(
             return strokes.into_iter().map(Traced::from).collect();
         };
         let choice = Choice::of(&flat, strokes, pixels);
-        match choice.fitted(flat.fills(), &price) {
-            Ok(traced) => {
-                let placed = tracing.may_place.then(|| choice.placed(&price)).flatten();
-                // A drawing of lines stays one where they are not found before a descent.
-                let has_areas =
-                    |traced: &[Traced]| traced.iter().any(|t| t.mark.as_area().is_some());
-                let no_more = placed.filter(|placed| has_areas(&traced) || !has_areas(placed));
-                return no_more.unwrap_or(traced);
-            }
+        let placed = tracing.may_place.then(|| choice.placed(&price)).flatten();
+        // A drawing of lines stays one where they are not found before a descent.
+        let has_areas = |traced: &[Traced]| traced.iter().any(|t| t.mark.as_area().is_some());
+        if let Some(placed) = &placed
+            && (choice.has_areas() || !has_areas(placed))
+        {
+            return placed.clone();
+        }
+        match choice.fitted(&price) {
+            Ok(traced) => return placed.filter(|_| has_areas(&traced)).unwrap_or(traced),
             // What strokes do not draw stays with what it came apart from.
             Err(lines) => {
                 let pixels = |line| flat.pixels_of(line).collect();
@@ -156,20 +157,13 @@ fn parts(areas: Option<&Areas>, pixels: &Pixels<'_>, tracing: Tracing) -> Parts 
     Parts::of(&shapes, pixels.width, pixels.width * pixels.height)
 }
 
-impl Traced {
-    /// A mark that a descent places.
-    fn of(mark: Mark, gain: f32) -> Self {
+impl From<TracedStroke> for Traced {
+    fn from(TracedStroke { stroke, gain, .. }: TracedStroke) -> Self {
         Self {
-            mark,
+            mark: stroke.into(),
             gain,
             is_placed: false,
         }
-    }
-}
-
-impl From<TracedStroke> for Traced {
-    fn from(TracedStroke { stroke, gain, .. }: TracedStroke) -> Self {
-        Self::of(stroke.into(), gain)
     }
 }
 

@@ -7,7 +7,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::line::Line;
 use super::segment::{
-    Knot, Segment, TOLERANCE, Vertex, path_of, polyline, set_values, turn, turned, values_of,
+    Knot, Segment, TOLERANCE, Vertex, own_unknowns, path_of, polyline, set_values, turn, turned,
+    values_of,
 };
 use crate::math::{self, Point, Vec2};
 use crate::scene::{Path, Shape};
@@ -130,30 +131,12 @@ impl Ring {
         count as f64
     }
 
-    /// The numbers of a ring that do not count where lines and outlines compete: where it is, and the width of a line, which many
-    /// share.
-    pub(super) fn free_of_charge(&self) -> f64 {
-        match self {
-            Self::Shape { .. } | Self::Knots(_) => 2.0,
-            Self::Line(_) => 3.0,
-        }
-    }
-
     /// The number of segments: 1 of a shape.
     pub(super) fn segments(&self) -> usize {
         match self {
             Self::Shape { .. } | Self::Line(_) => 1,
             Self::Knots(knots) => knots.len(),
         }
-    }
-
-    /// The index of the first unknown of each segment besides its vertices.
-    fn own_unknowns(knots: &[Knot]) -> impl Iterator<Item = usize> + '_ {
-        knots.iter().scan(2 * knots.len(), |next, knot| {
-            let first = *next;
-            *next += knot.segment.unknowns();
-            Some(first)
-        })
     }
 
     /// The polyline that replaces segment `i`, with the derivatives of its vertices; without its end, if that is its start.
@@ -195,8 +178,8 @@ impl Ring {
     pub(super) fn owns(&self) -> Vec<usize> {
         match self {
             Self::Shape { .. } => vec![0],
-            Self::Knots(knots) => Self::own_unknowns(knots).collect(),
-            Self::Line(line) => Self::own_unknowns(&line.knots).collect(),
+            Self::Knots(knots) => own_unknowns(knots).collect(),
+            Self::Line(line) => own_unknowns(&line.knots).collect(),
         }
     }
 

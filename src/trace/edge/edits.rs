@@ -110,9 +110,7 @@ fn costs(ring: &Ring, segments: &[usize], target: &dyn Fn(Band) -> Target, page:
     let cost = |&i: &usize| {
         alone.forget();
         alone.add(ring, i, &owns);
-        let errors = alone.touched().into_iter();
-        let errors = errors.map(|pixel| target.error(pixel, shares[pixel]));
-        0.5 * errors.map(|error| error * error).sum::<f64>()
+        target.half_chi2(&alone.touched(), &shares)
     };
     segments.iter().map(cost).collect()
 }
@@ -310,7 +308,7 @@ pub(super) fn shorter(knots: &[Knot], i: usize) -> Vec<Edit> {
 }
 
 /// The line behind vertex `i` along the nearer axis, at the middle of its ends, if it is nearly so.
-pub(super) fn along(knots: &[Knot], i: usize) -> Option<Vec<Knot>> {
+fn along(knots: &[Knot], i: usize) -> Option<Vec<Knot>> {
     let next = (i + 1) % knots.len();
     let [from, to] = [knots[i].at, knots[next].at];
     let way = to - from;
@@ -382,7 +380,7 @@ fn handles(knot: &Knot, to: Point) -> [Point; 2] {
 }
 
 /// The bulge of the arc between two points near a third one.
-pub(super) fn bulge_of(from: Point, to: Point, on: Point) -> f64 {
+fn bulge_of(from: Point, to: Point, on: Point) -> f64 {
     let chord = to - from;
     // The sagitta over half the chord, positive on the side to which (y, −x) points.
     2.0 * (on - from.midpoint(to)).dot(Vec2::new(chord.y, -chord.x)) / chord.hypot2().max(1e-12)

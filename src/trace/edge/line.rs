@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::segment::{Knot, NEARLY, Segment, Vertex, directions, path_of, polyline, turned};
+use super::segment::{
+    Knot, NEARLY, Segment, Vertex, directions, own_unknowns, path_of, polyline, turned,
+};
 use crate::math::{self, Point, Vec2};
 use crate::scene::{Cap, Path, Shape};
 
@@ -157,8 +159,9 @@ impl Line {
     /// A side is the middle moved along its normal, which does not change to first order where the middle turns: only the end that a
     /// normal has in the derivatives is that of the radius.
     pub(super) fn outline(&self) -> Vec<Vertex> {
-        let segments: Vec<(Vec<Vertex>, Vec<Vec2>)> =
-            (0..self.segments()).map(|i| self.middle(i)).collect();
+        let owns = own_unknowns(&self.knots).take(self.segments());
+        let segments = owns.enumerate().map(|(i, own)| self.middle(i, own));
+        let segments: Vec<(Vec<Vertex>, Vec<Vec2>)> = segments.collect();
         let radius = (self.radius, self.radius_index());
         let mut outline = Vec::new();
         // 1. The side to the left, seen with y pointing down; 2. the end; 3. the other side, backwards; 4. the start.
@@ -195,15 +198,9 @@ impl Line {
         outline
     }
 
-    /// The polyline of a segment's middle and its directions.
-    fn middle(&self, i: usize) -> (Vec<Vertex>, Vec<Vec2>) {
-        let own: usize = self
-            .knots
-            .iter()
-            .take(i)
-            .map(|k| k.segment.unknowns())
-            .sum();
-        let vertices = polyline(&self.knots, i, 2 * self.knots.len() + own);
+    /// The polyline of a segment's middle, whose unknowns besides the vertices begin at `own`, and its directions.
+    fn middle(&self, i: usize, own: usize) -> (Vec<Vertex>, Vec<Vec2>) {
+        let vertices = polyline(&self.knots, i, own);
         let to = self.knots[(i + 1) % self.knots.len()].at;
         let [start, end] = directions(&self.knots[i], to).map(unit);
         let last = vertices.len() - 1;
@@ -286,15 +283,8 @@ fn unit(way: Vec2) -> Vec2 {
 mod tests {
     use super::super::coverage::{Band, Coverage, Page};
     use super::super::curve::Ring;
+    use super::super::describe;
     use super::*;
-
-    fn knot(x: f64, y: f64) -> Knot {
-        Knot {
-            at: Point::new(x, y),
-            segment: Segment::Line,
-            is_smooth: false,
-        }
-    }
 
     /// The distance of a place from a polyline.
     fn distance(p: Point, places: &[Point]) -> f64 {
@@ -317,7 +307,7 @@ mod tests {
         for corner in [[50.0, 20.3], [12.1, 14.2]] {
             let places = [[10.2, 40.7], corner, [15.4, 12.9]].map(|[x, y]| Point::new(x, y));
             let line = Line {
-                knots: places.map(|p| knot(p.x, p.y)).to_vec(),
+                knots: places.map(describe::corner).to_vec(),
                 is_closed: false,
                 radius: 4.2,
                 cap: Cap::Round,

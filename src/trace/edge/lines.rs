@@ -14,7 +14,7 @@ use super::line::{FLAT, Line};
 use super::refine::{self, Target};
 use super::segment::{Knot, Segment};
 use super::shapes;
-use super::{Shares, whole};
+use super::{FREE, Shares, whole};
 use crate::math::{self, Point, Vec2, median};
 use crate::scene::Cap;
 
@@ -157,25 +157,21 @@ fn target(shares: &Shares<'_>, lines: &[Line], i: usize) -> Target {
 /// Lines without those that do not pay, of which those are one whose ends are near each other, where that is shorter, and the length
 /// of their description.
 fn joined(shares: &Shares<'_>, mut lines: Vec<Line>) -> (Vec<Line>, f64) {
-    // Where a line is and how wide counts here, so that fewer lines are shorter.
+    // Where a line is and how wide counts here, so that fewer lines are shorter. Lines that win beside outlines as several do so as one.
     let length_of = |lines: &[Line]| {
-        let places = lines
-            .iter()
-            .map(|line| Ring::Line(line.clone()).free_of_charge());
-        shares.length_of_lines(lines) + PRICE * places.sum::<f64>()
+        let beside = shares.length_of_lines(lines);
+        let places = lines.len() as f64 * FREE[1];
+        (beside + PRICE * places, beside)
     };
-    let mut length = length_of(&lines);
-    // Lines that win beside outlines as several do so as one.
-    let mut least = shares.length_of_lines(&lines);
+    let (mut length, mut least) = length_of(&lines);
     let mut pairs: Vec<[usize; 2]> = Vec::new();
     'all: loop {
         for i in 0..lines.len() {
             let mut fewer = lines.clone();
             fewer.remove(i);
-            let shorter = length_of(&fewer);
+            let (shorter, beside) = length_of(&fewer);
             if !fewer.is_empty() && shorter < length {
-                least = least.min(shares.length_of_lines(&fewer));
-                (lines, length) = (fewer, shorter);
+                (lines, length, least) = (fewer, shorter, least.min(beside));
                 pairs.clear();
                 continue 'all;
             }
@@ -195,14 +191,13 @@ fn joined(shares: &Shares<'_>, mut lines: Vec<Line>) -> (Vec<Line>, f64) {
                     fewer[i] = line;
                     let target = target(shares, &fewer, i);
                     fewer[i] = settled(&fewer[i], &target).1;
-                    if length_of(&fewer) > length + JOINED * PRICE {
+                    if length_of(&fewer).0 > length + JOINED * PRICE {
                         continue;
                     }
                     fewer[i] = improved(&fewer[i], &target).1;
-                    let shorter = length_of(&fewer);
+                    let (shorter, beside) = length_of(&fewer);
                     if shorter < length {
-                        least = least.min(shares.length_of_lines(&fewer));
-                        (lines, length) = (fewer, shorter);
+                        (lines, length, least) = (fewer, shorter, least.min(beside));
                         pairs.clear();
                         continue 'all;
                     }
@@ -257,10 +252,8 @@ fn off(line: &Line, target: &Target) -> Vec<bool> {
             is_closed: false,
             ..line.clone()
         });
-        let touched = Coverage::of(&part, &target.band).touched().into_iter();
-        let errors = touched.map(|pixel| target.error(pixel, covered[pixel]));
-        let off = 0.5 * errors.map(|error| error * error).sum::<f64>();
-        (PRICE..FAR * PRICE).contains(&off)
+        let touched = Coverage::of(&part, &target.band).touched();
+        (PRICE..FAR * PRICE).contains(&target.half_chi2(&touched, &covered))
     };
     (0..line.segments()).map(is_off).collect()
 }
@@ -582,6 +575,7 @@ impl Profile {
 #[cfg(test)]
 mod tests {
     use super::super::coverage::Page;
+    use super::super::describe::tests::knot;
     use super::*;
 
     /// The lines that are found along a middle on a page of 64 px that shows this line.
@@ -622,11 +616,16 @@ mod tests {
         lines(&field, &shares, &[middle], f64::INFINITY).unwrap().0
     }
 
-    fn knot([x, y]: [f64; 2], segment: Segment, is_smooth: bool) -> Knot {
-        Knot {
-            at: Point::new(x, y),
-            segment,
-            is_smooth,
+    /// A line that is straight between these places.
+    fn straight(places: &[[f64; 2]], cap: Cap, radius: f64) -> Line {
+        Line {
+            knots: places
+                .iter()
+                .map(|[x, y]| corner(Point::new(*x, *y)))
+                .collect(),
+            is_closed: false,
+            radius,
+            cap,
         }
     }
 
@@ -646,10 +645,10 @@ mod tests {
     fn a_hook_is_two_lines_and_an_arc_between_them() {
         let hook = Line {
             knots: vec![
-                knot([12.3, 50.2], Segment::Along(1), false),
-                knot([12.3, 28.4], Segment::Arc(1.0), true),
-                knot([44.9, 28.4], Segment::Along(1), true),
-                knot([44.9, 46.1], Segment::Line, false),
+                knot(12.3, 50.2, Segment::Along(1), false),
+                knot(12.3, 28.4, Segment::Arc(1.0), true),
+                knot(44.9, 28.4, Segment::Along(1), true),
+                knot(44.9, 46.1, Segment::Line, false),
             ],
             is_closed: false,
             radius: 3.2,
@@ -669,17 +668,8 @@ mod tests {
 
     #[test]
     fn a_line_that_the_page_cuts_lengthwise_is_as_wide_as_its_rest() {
-        let corner = Line {
-            knots: vec![
-                knot([20.2, 12.7], Segment::Line, false),
-                knot([61.8, 20.3], Segment::Line, false),
-                knot([61.8, 55.4], Segment::Line, false),
-            ],
-            is_closed: false,
-            radius: 4.1,
-            cap: Cap::Round,
-        };
-        let found = found(&corner, &[[21.0, 13.0], [61.0, 20.0], [60.5, 55.0]]);
+        let line = straight(&[[20.2, 12.7], [61.8, 20.3], [61.8, 55.4]], Cap::Round, 4.1);
+        let found = found(&line, &[[21.0, 13.0], [61.0, 20.0], [60.5, 55.0]]);
         let [line] = &found[..] else {
             panic!("{found:?}")
         };
@@ -693,19 +683,10 @@ mod tests {
 
     #[test]
     fn a_triangle_that_was_traced_as_an_open_line_is_closed() {
+        let open = straight(&[[12.2, 14.5], [50.1, 20.3], [26.4, 52.6]], Cap::Round, 2.8);
         let triangle = Line {
-            knots: vec![
-                knot([12.2, 14.5], Segment::Line, false),
-                knot([50.1, 20.3], Segment::Line, false),
-                knot([26.4, 52.6], Segment::Line, false),
-            ],
             is_closed: true,
-            radius: 2.8,
-            cap: Cap::Round,
-        };
-        let open = Line {
-            is_closed: false,
-            ..triangle.clone()
+            ..open.clone()
         };
         let found = found_along(
             &triangle,
@@ -720,16 +701,7 @@ mod tests {
 
     #[test]
     fn square_ends_and_a_mitred_corner_are_told_from_round_ones() {
-        let chevron = Line {
-            knots: vec![
-                knot([10.3, 12.4], Segment::Line, false),
-                knot([30.2, 48.1], Segment::Line, false),
-                knot([52.7, 15.2], Segment::Line, false),
-            ],
-            is_closed: false,
-            radius: 3.5,
-            cap: Cap::Butt,
-        };
+        let chevron = straight(&[[10.3, 12.4], [30.2, 48.1], [52.7, 15.2]], Cap::Butt, 3.5);
         assert_found(&chevron, &[[11.5, 14.5], [30.0, 47.0], [51.0, 17.0]]);
         let found = found(&chevron, &[[11.5, 14.5], [30.0, 47.0], [51.0, 17.0]]);
         assert_eq!(found[0].cap, Cap::Butt);

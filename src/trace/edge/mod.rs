@@ -108,39 +108,30 @@ pub(super) fn rings(
     }
     let mut misfits: Vec<f64> = Vec::new();
     for (ring, shape) in &mut described {
-        if !is_single {
-            shares.add(ring, 1.0);
-        }
-        *ring = shares.refined(ring, &[]).0;
-        shares.choose(ring, shape);
-        misfits.extend(shares.misfits(ring));
-        if !is_single {
-            shares.add(ring, -1.0);
-        }
+        shares.alone(ring, is_single, |shares, ring| {
+            *ring = shares.refined(ring, &[]).0;
+            shares.choose(ring, shape);
+            misfits.extend(shares.misfits(ring));
+        });
     }
     // 3. What edges are off by beyond what pixels tell is the error of the model: mixtures of three colours, blurs, blocks.
     shares.factor = factor(misfits);
     // 4. More numbers or fewer, and the shape once more.
     for (ring, shape) in &mut described {
-        if !is_single {
-            shares.add(ring, 1.0);
-        }
-        edits::improve(ring, &|band| shares.target(band), page);
-        shares.choose(ring, shape);
-        if !is_single {
-            shares.add(ring, -1.0);
-        }
+        shares.alone(ring, is_single, |shares, ring| {
+            edits::improve(ring, &|band| shares.target(band), page);
+            shares.choose(ring, shape);
+        });
     }
-    // 5. Of several, those that pay.
+    // 5. Of several, those that pay, as near as all that pixels tell.
+    shares.slack = 0.0;
     let mut rings = Vec::new();
     for (ring, _) in described {
         if !is_single {
             shares.add(&ring, 1.0);
         }
         if is_single || shares.pay_for(&ring) {
-            shares.slack = 0.0;
             let ring = shares.refined(&ring, &[]).0;
-            shares.slack = BIASES[0];
             if !is_single {
                 shares.add(&ring, -1.0);
             }
@@ -167,6 +158,9 @@ fn factor(mut misfits: Vec<f64>) -> f64 {
 /// a ring that is filled, and by 0.05 to 0.09 around the same ring that is drawn as a line. Of 41 drawings and of 39 icons of lines at
 /// 128 px, 0, 0.05 and 0.08 need 0.73, 0.69 and 0.68, and 3.7, 2.1 and 2.0 times the artist's numbers.
 const BIASES: [f64; 2] = [0.05, 0.08];
+
+/// The numbers of a ring, and of a line, that do not count where they compete: where it is, and the width of a line, which many share.
+const FREE: [f64; 2] = [2.0, 3.0];
 
 /// Share of a place that what lies on top covers from which on an edge is hidden there. A guess.
 const COVERED: f32 = 0.9;
@@ -204,9 +198,9 @@ pub(super) fn lines(
     rings.iter().for_each(|ring| shares.add(ring, -1.0));
     let mut misfits = Vec::new();
     for ring in rings {
-        shares.add(ring, 1.0);
-        misfits.extend(shares.misfits(ring));
-        shares.add(ring, -1.0);
+        shares.alone(&mut ring.clone(), false, |shares, ring| {
+            misfits.extend(shares.misfits(ring));
+        });
     }
     rings.iter().for_each(|ring| shares.add(ring, 1.0));
     shares.factor = factor(misfits);
@@ -268,6 +262,17 @@ impl Shares<'_> {
         self.values = values;
     }
 
+    /// Gives what a ring covers back to it, and takes it away again after `work`, unless it `is_single` and has kept it.
+    fn alone(&mut self, ring: &mut Ring, is_single: bool, work: impl FnOnce(&Self, &mut Ring)) {
+        if !is_single {
+            self.add(ring, 1.0);
+        }
+        work(self, ring);
+        if !is_single {
+            self.add(ring, -1.0);
+        }
+    }
+
     /// The ring after Levenberg–Marquardt, and the length of its description on the pixels near it and near others.
     fn refined(&self, ring: &Ring, others: &[&Ring]) -> (Ring, f64) {
         const ITERATIONS: usize = 12;
@@ -292,7 +297,7 @@ impl Shares<'_> {
         let mut covered = vec![0.0; self.values.len()];
         let mut freedom = 0.0;
         for ring in rings {
-            freedom += ring.freedom() - ring.free_of_charge();
+            freedom += ring.freedom() - FREE[0];
             self.covered(ring, |i, share| covered[i] += share);
         }
         let covered = covered.iter().map(|&share: &f64| [share.min(1.0); 2]);
@@ -301,9 +306,9 @@ impl Shares<'_> {
 
     /// The length of the description of the whole page by lines, which may lie on one another.
     fn length_of_lines(&self, lines: &[Line]) -> f64 {
-        let rings = lines.iter().map(|line| Ring::Line(line.clone()));
-        let freedom: f64 = rings
-            .map(|ring| ring.freedom() - ring.free_of_charge())
+        let freedom: f64 = lines
+            .iter()
+            .map(|line| line.freedom() as f64 - FREE[1])
             .sum();
         self.half_chi2(self.covered_by(lines).into_iter()) + PRICE * freedom
     }
@@ -325,7 +330,7 @@ impl Shares<'_> {
     fn half_chi2(&self, covered: impl Iterator<Item = [f64; 2]>) -> f64 {
         let pixels = covered.zip(&self.values).zip(self.doubts);
         let squares = pixels.map(|((covered, value), doubt)| {
-            let away = (outside(*value, covered) - self.slack).max(0.0) / (self.factor * doubt);
+            let away = self.outside(*value, covered, *doubt);
             (away * away).min(describe::CAP)
         });
         0.5 * squares.sum::<f64>()
@@ -340,10 +345,14 @@ impl Shares<'_> {
             doubt.is_finite() && (is_edge(*least) || is_edge(*most) || is_edge(**value))
         });
         edges
-            .map(|((covered, value), doubt)| {
-                (outside(*value, covered) - self.slack).max(0.0) / (self.factor * doubt)
-            })
+            .map(|((covered, value), doubt)| self.outside(*value, covered, *doubt))
             .collect()
+    }
+
+    /// How far a value is outside of a range, in units of its deviation.
+    fn outside(&self, value: f64, [least, most]: [f64; 2], doubt: f64) -> f64 {
+        let away = (least - value).max(value - most) - self.slack;
+        away.max(0.0) / (self.factor * doubt)
     }
 
     /// The standard deviation of the share of a pixel.
@@ -409,11 +418,6 @@ fn doubt_of_edges(field: &Field, doubts: &[f64]) -> f64 {
         .filter(|(share, doubt)| **share > 0.0 && **share < 1.0 && doubt.is_finite())
         .map(|(_, doubt)| *doubt as f32);
     math::median(edges).map_or(0.0, f64::from)
-}
-
-/// How far a value is outside of a range.
-fn outside(value: f64, [least, most]: [f64; 2]) -> f64 {
-    (least - value).max(value - most).max(0.0)
 }
 
 /// The band of all segments of a ring, and near others.

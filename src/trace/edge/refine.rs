@@ -27,6 +27,12 @@ impl Target {
         let slack = self.slacks[pixel];
         (away - away.clamp(-slack, slack)) / self.sigmas[pixel]
     }
+
+    /// Half of χ² of some pixels of the band that are covered like this.
+    pub(super) fn half_chi2(&self, pixels: &[usize], shares: &[f64]) -> f64 {
+        let errors = pixels.iter().map(|&pixel| self.error(pixel, shares[pixel]));
+        0.5 * errors.map(|error| error * error).sum::<f64>()
+    }
 }
 
 /// Standard deviation of the angle of a smooth joint, rad.
@@ -66,38 +72,36 @@ impl<'a> Moving<'a> {
                 moves[0] = true;
                 indices.fill(Some(0));
             }
-            // An outline is one polyline, whichever of its vertices move.
-            Ring::Line(line) => {
-                moves[0] = true;
-                let count = line.knots.len();
-                let owns = ring.owns();
+            Ring::Line(_) | Ring::Knots(_) => {
+                let knots = ring.knots();
+                let before = |i: usize| (i + knots.len() - 1) % knots.len();
+                let mut beside = vec![false; knots.len()];
                 for &i in free {
-                    indices[2 * i] = Some(0);
-                    indices[2 * i + 1] = Some(0);
-                    for k in [i, (i + count - 1) % count]
-                        .into_iter()
-                        .filter(|k| *k < line.segments())
-                    {
-                        let own = owns[k]..owns[k] + line.knots[k].segment.unknowns();
-                        indices[own].fill(Some(0));
-                    }
+                    indices[2 * i..2 * i + 2].fill(Some(0));
+                    (beside[i], beside[before(i)]) = (true, true);
                 }
-                indices[line.radius_index()] = Some(0);
-                joints.extend(ring.smooth());
-            }
-            Ring::Knots(knots) => {
-                for &i in free {
-                    moves[i] = true;
-                    moves[(i + count - 1) % count] = true;
-                    indices[2 * i] = Some(0);
-                    indices[2 * i + 1] = Some(0);
-                }
-                for i in (0..count).filter(|&i| moves[i]) {
+                // Behind the end of an open line is nothing.
+                let segments = match ring {
+                    Ring::Line(line) => line.segments(),
+                    _ => count,
+                };
+                for i in (0..segments).filter(|&i| beside[i]) {
                     let own = owns[i]..owns[i] + knots[i].segment.unknowns();
                     indices[own].fill(Some(0));
                 }
-                let is_near = |&i: &usize| moves[i] || moves[(i + count - 1) % count];
-                joints.extend((0..count).filter(|&i| knots[i].is_smooth).filter(is_near));
+                match ring {
+                    // An outline is one polyline, whichever of its vertices move.
+                    Ring::Line(line) => {
+                        moves[0] = true;
+                        indices[line.radius_index()] = Some(0);
+                        joints.extend(ring.smooth());
+                    }
+                    _ => {
+                        let is_near = |i: &usize| beside[*i] || beside[before(*i)];
+                        joints.extend(ring.smooth().filter(is_near));
+                        moves = beside;
+                    }
+                }
             }
         }
         // The ends of lines along an axis have one place across, which stays where one of them does.

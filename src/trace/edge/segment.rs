@@ -149,6 +149,15 @@ impl Ends {
     }
 }
 
+/// The index of the first unknown of the segment behind each vertex, besides those of the vertices.
+pub(super) fn own_unknowns(knots: &[Knot]) -> impl Iterator<Item = usize> + '_ {
+    knots.iter().scan(2 * knots.len(), |next, knot| {
+        let first = *next;
+        *next += knot.segment.unknowns();
+        Some(first)
+    })
+}
+
 /// The values of the unknowns of vertices, so many of which have segments behind them.
 pub(super) fn values_of(knots: &[Knot], segments: usize) -> Vec<f64> {
     let mut values: Vec<f64> = knots.iter().flat_map(|k| [k.at.x, k.at.y]).collect();

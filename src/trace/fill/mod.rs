@@ -10,6 +10,7 @@
 //! stack      larger shapes lie below and go on beneath what lies on top
 //! corners    where that turns
 //! outline    its corners and the splines between them, as few points as are near enough
+//! placing    or shapes and lines where their edges are seen
 //! compound   shapes of one colour with nothing between them are one
 //! ```
 
@@ -20,27 +21,27 @@ mod hull;
 mod mixtures;
 mod outline;
 mod overlaps;
+mod placing;
 mod regions;
 mod shades;
 mod span;
 mod stack;
 mod translucent;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
 use super::areas::{self, LEVEL, Pixel, Pixels, away, distance2, is_opaque, mix};
 use super::contour::{self, Field, Place, between};
-use super::edge::{self, Ring};
 use super::parts::{Part, Parts};
 use super::tracing::Tracing;
-use crate::math::{self, Point};
 use crate::scene::{Area, Path, Rgb};
 use colors::{CANVAS, NONE};
 pub(super) use compound::Fill;
 use mixtures::Mixture;
 use outline::Surroundings;
+pub(super) use placing::Placing;
 use regions::{Region, Regions};
 use shades::Shaded;
 use stack::{Layer, Stack};
@@ -68,15 +69,6 @@ pub(super) struct Flat<'a> {
 /// The share of the pixels that has to be flat, or there are no filled shapes. Drawings of filled shapes have 0.69 to 0.99,
 /// photographs 0.07 to 0.31, scanned line drawings 0.53 to 0.68.
 const LEAST_FLAT: f32 = 0.6;
-/// Farthest that shapes go on beyond the picture's border, px. A guess: twice what fields do.
-const BEYOND: f64 = 4.0;
-/// Standard deviation of the share of a pixel that renderers say an edge covers: resvg takes 16 samples, and is off by 0.05 in the
-/// mean of squares. Of 16 icons of 128, 256 and 512 px, 0.01, 0.05 and 0.12 leave a mean colour error of 0.0075, 0.011 and 0.016
-/// ΔE00 with 1.00, 0.91 and 0.86 times the artist's numbers.
-const RENDERED: f64 = 0.05;
-/// Edges whose pixels deviate by less from what is described, shares, are where they are seen. A guess: where colours are few they deviate
-/// by 0.05 to 0.1, between the steps of gradients by 0.2 to 8.
-const SURE: f64 = 0.2;
 /// The share of the squared residual that colours and their mixtures have to explain. Drawings of filled shapes have 0.93 to 1,
 /// photographs 0.30 to 0.77, scanned line drawings 0.86 to 0.93.
 const LEAST_EXPLAINED: f32 = 0.9;
@@ -85,8 +77,6 @@ const HIDDEN: f32 = 32.0;
 /// Most pixel edges between areas that are placed where they are seen: of longer outlines, descents take less time. Blobs of noise of
 /// 2,000 px take 112 s without this bound, and 41 s with it.
 const MOST_EDGES: u32 = 6_000;
-/// Least share of a pixel that is not hidden for it to tell something of what is seen there. A guess.
-const LEAST_SEEN: f32 = 0.03;
 
 impl<'a> Flat<'a> {
     /// The stack of a picture whose shapes come apart like this, if it is one of few colours.
@@ -217,88 +207,11 @@ impl<'a> Flat<'a> {
         self.filled(layer, rings.collect(), gains)
     }
 
-    /// The shapes of the stack where their edges are seen, from back to front, unless these are too long.
-    pub(super) fn placed_fills(&self) -> Option<Vec<Fill<Ring>>> {
+    /// What places shapes where their edges are seen, unless these are too long.
+    pub(in crate::trace) fn placing(&self) -> Option<Placing<'_>> {
         let touching = self.neighbours.iter().flat_map(BTreeMap::values);
         // Each pair of pixels counts for both of its regions.
-        if touching.sum::<u32>() > 2 * MOST_EDGES {
-            return None;
-        }
-        let spreads = self.spreads();
-        let gains = self.gains();
-        let layers = self.stack.layers.par_iter();
-        let fills = layers.filter_map(|layer| self.placed_fill(layer, &gains, &spreads));
-        Some(fills.collect())
-    }
-
-    /// The areas of shapes, those of one colour joined, from back to front, beside so many strokes. Those of `left_out` regions are
-    /// not drawn. `None` where colours do not tell where their edges are.
-    pub(super) fn placed_areas(
-        &self,
-        fills: &[Fill<Ring>],
-        left_out: &[bool],
-        strokes: usize,
-    ) -> Option<Vec<Filled>> {
-        let fills = fills.iter().filter(|fill| !left_out[fill.region as usize]);
-        let fills: Vec<Fill<Ring>> = fills.cloned().collect();
-        if fills.iter().any(|fill| fill.deviation >= SURE) {
-            return None;
-        }
-        let joined = self.joined(fills);
-        let is_only = joined.len() == 1;
-        let mut room = self.tracing.most.saturating_sub(joined.len() + strokes);
-        Some(self.painted(&joined, |rings| compound::paths(rings, is_only, &mut room)))
-    }
-
-    /// The shape of a layer by its edges.
-    fn placed_fill(&self, layer: &Layer, gains: &[f32], spreads: &[f64]) -> Option<Fill<Ring>> {
-        let (width, height) = (self.regions.width, self.regions.height);
-        let (mut field, mut hides) = self.seen_of(layer);
-        hides[layer.region as usize] = false;
-        let shown = self.members(&[layer.region]);
-        let doubts = self.doubts(&mut field, (&shown, &hides), spreads);
-        // Beyond its border the picture hides what it cuts, but shapes do not go on far.
-        let far = |at: f64, size: usize| !(-BEYOND..size as f64 + BEYOND).contains(&at);
-        let hidden = |p: Point| match far(p.x, width) || far(p.y, height) {
-            true => 0.0,
-            false => self.share_at(math::xy(p), &hides),
-        };
-        let (rings, deviation) = edge::rings(&field, &doubts, hidden);
-        let fill = self.filled(layer, rings, gains)?;
-        Some(Fill { deviation, ..fill })
-    }
-
-    /// Lines along middles that draw what some shapes show; `None` where colours do not tell where they are, or if the shapes have a
-    /// shorter description.
-    pub(super) fn lines(
-        &self,
-        fills: &[&Fill<Ring>],
-        middles: &[edge::Middle],
-    ) -> Option<Vec<edge::Line>> {
-        let regions: Vec<u32> = fills.iter().map(|fill| fill.region).collect();
-        let covers = fills.iter().flat_map(|fill| &fill.covers);
-        let covers: BTreeSet<u32> = covers.copied().collect();
-        let layer = Layer {
-            region: *regions.first()?,
-            rank: fills.iter().map(|fill| fill.rank).min()?,
-            covers: covers.into_iter().collect(),
-        };
-        // What lies on top hides a line, and so does what has its colour.
-        let (mut field, mut hides) = self.seen_of(&layer);
-        let label = self.label(layer.region);
-        let alike = self.regions.list.iter().map(|other| other.label == label);
-        hides
-            .iter_mut()
-            .zip(alike)
-            .for_each(|(hides, is_alike)| *hides |= is_alike);
-        regions.iter().for_each(|&r| hides[r as usize] = false);
-        let shown = self.members(&regions);
-        let doubts = self.doubts(&mut field, (&shown, &hides), &self.spreads());
-        let rings = fills.iter().flat_map(|fill| fill.rings.iter().cloned());
-        let rings: Vec<Ring> = rings.collect();
-        let lines = edge::lines(&field, &doubts, middles, &rings)?;
-        let [by_lines, by_rings] = lines.lengths;
-        (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
+        (touching.sum::<u32>() <= 2 * MOST_EDGES).then(|| Placing::of(self))
     }
 
     /// The shares of pixels that a layer covers, and for each region whether it hides the layer's outline.
@@ -329,92 +242,6 @@ impl<'a> Flat<'a> {
             covers: layer.covers.clone(),
             deviation: 0.0,
         })
-    }
-
-    /// The standard deviation of the share of each pixel of a field, and, where something `hides` a part of the pixel, that share: all
-    /// of what is seen there, if it is `shown`, or nothing. Where nothing is seen, the deviation is infinite.
-    fn doubts(
-        &self,
-        field: &mut Field,
-        (shown, hides): (&[bool], &[bool]),
-        spreads: &[f64],
-    ) -> Vec<f64> {
-        let regions = &self.regions;
-        let (origin, width) = (field.origin, field.width);
-        let height = field.values.len() / width;
-        let doubt = |(k, value): (usize, &mut f32)| {
-            let [column, row] = [k % width, k / width];
-            // Contours need a border of zeros.
-            let is_border = column == 0 || row == 0 || column + 1 == width || row + 1 == height;
-            let [x, y] = [origin[0] + column as i32, origin[1] + row as i32];
-            if x < 0 || y < 0 || x as usize >= regions.width || y as usize >= regions.height {
-                return f64::INFINITY;
-            }
-            let i = y as usize * regions.width + x as usize;
-            let (own, second) = (regions.of[i], regions.second[i]);
-            let hidden = regions.share_of(i, hides);
-            if 1.0 - hidden < LEAST_SEEN {
-                return f64::INFINITY;
-            }
-            let seen = match hides[own as usize] {
-                true => second,
-                false => own,
-            };
-            if hidden > 0.0 && !is_border {
-                *value = f32::from(u8::from(shown[seen as usize]));
-            }
-            // A pixel of one region tells by its colour that none of its neighbours' is there.
-            let others = match own == second {
-                true => self.beside(i),
-                false => vec![second],
-            };
-            let others = others.into_iter().map(|other| {
-                let contrast = f64::from(away(&self.shown(own, i), &self.shown(other, i)));
-                let spread = |r: u32| spreads[r as usize];
-                (contrast, spread(own).max(spread(other)))
-            });
-            let (contrast, spread) = others
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .unwrap_or((1.0, 0.0));
-            let noise = f64::from(self.tracing.doubt.max(0.3) * LEVEL).max(spread);
-            // What two colours do not explain may be a third one.
-            let rest = f64::from(away(&self.pixels.target.at(i), &self.seen(i)));
-            let rest = if own == second { 0.0 } else { rest };
-            math::hypot(RENDERED, math::hypot(noise, rest) / contrast.max(0.01))
-                / f64::from(1.0 - hidden)
-        };
-        field.values.iter_mut().enumerate().map(doubt).collect()
-    }
-
-    /// The regions that the pixels beside a pixel belong to, but its own.
-    fn beside(&self, i: usize) -> Vec<u32> {
-        let Regions {
-            width, height, of, ..
-        } = &self.regions;
-        let [x, y] = [i % width, i / width];
-        let beside = [
-            (x > 0).then(|| i - 1),
-            (x + 1 < *width).then_some(i + 1),
-            (y > 0).then(|| i - width),
-            (y + 1 < *height).then_some(i + width),
-        ];
-        let beside = beside.into_iter().flatten().map(|k| of[k]);
-        beside.filter(|r| *r != of[i]).collect()
-    }
-
-    /// How far the colours of the pixels of each region are from what is shown of it, in the mean of squares.
-    fn spreads(&self) -> Vec<f64> {
-        let spread = |(region, r): (&Region, u32)| {
-            let own = region.members.iter().map(|&i| i as usize);
-            let pure = own.filter(|&i| self.regions.share[i] == 0.0);
-            let (sum, count) = pure.fold((0.0, 0.0), |(sum, count): (f64, f64), i| {
-                let away = away(&self.pixels.target.at(i), &self.shown(r, i));
-                (sum + f64::from(away * away), count + 1.0)
-            });
-            (sum / count.max(1.0)).sqrt()
-        };
-        let numbered: Vec<(&Region, u32)> = self.regions.list.iter().zip(0..).collect();
-        numbered.into_par_iter().map(spread).collect()
     }
 
     /// The colour of a shape on a clear page, by that of the region and of what it lies on.
@@ -528,6 +355,11 @@ impl<'a> Flat<'a> {
     /// The part of a region.
     pub(super) fn part(&self, region: u32) -> Part {
         self.regions.list[region as usize].part
+    }
+
+    /// The regions that are shapes of their own, from back to front.
+    pub(super) fn shapes(&self) -> impl Iterator<Item = u32> {
+        self.stack.layers.iter().map(|layer| layer.region)
     }
 
     /// True if a shape came apart.
