@@ -62,7 +62,7 @@ class Strokes(Columns[Stroke]):
     >>> import numpy as np, strokefit
     >>> picture = np.full((24, 48), 255, np.uint8)
     >>> picture[10:14, 8:40] = 50
-    >>> strokes = strokefit.fit(picture, strokes=4).strokes
+    >>> strokes = strokefit.fit(picture, strokes=4, marks="strokes").strokes
     >>> [len(strokes), len(strokes.widths)] == [strokes.colors.shape[0]] * 2
     True
     >>> strokes.points[strokes.starts[0]:strokes.starts[1]].shape == strokes[0].points.shape
