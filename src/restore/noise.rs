@@ -144,11 +144,12 @@ fn sites(planes: &Planes) -> Vec<Site> {
     let step = (width * height).div_ceil(MOST_SITES).isqrt().max(1);
     let rows: Vec<usize> = (REACH..height - REACH).step_by(step).collect();
     let grid = grid::offset(planes);
+    let means = means(planes);
     let of_row = |&y: &usize| {
         let columns = (REACH..width - REACH).step_by(step);
         let opaque = columns.filter(|x| is_opaque(planes, [*x, y], HALF));
         opaque
-            .map(|x| site(planes, [x, y], grid))
+            .map(|x| site(planes, &means, [x, y], grid))
             .collect::<Vec<_>>()
     };
     let sites: Vec<Vec<Site>> = rows.par_iter().map(of_row).collect();
@@ -164,8 +165,23 @@ fn is_opaque(planes: &Planes, [x, y]: [usize; 2], reach: usize) -> bool {
             .all(|i| planes.is_opaque(i))
 }
 
+/// The mean of the window around each pixel; 0 where that would leave the picture.
+fn means(planes: &Planes) -> Vec<f32> {
+    let (luma, width) = (&planes.planes[0], planes.width);
+    let mut means = vec![0.0; luma.len()];
+    let rows = means.par_chunks_exact_mut(width).enumerate();
+    let inner = rows.filter(|(y, _)| (HALF..planes.height - HALF).contains(y));
+    inner.for_each(|(y, row)| {
+        for (x, mean) in row.iter_mut().enumerate().take(width - HALF).skip(HALF) {
+            let rows = (y - HALF..=y + HALF).flat_map(|y| &luma[y * width..][x - HALF..=x + HALF]);
+            *mean = rows.sum::<f32>() / (2 * HALF + 1).pow(2) as f32;
+        }
+    });
+    means
+}
+
 /// The site at a pixel. Blocks of JPEG begin at `grid`.
-fn site(planes: &Planes, [x, y]: [usize; 2], grid: [usize; 2]) -> Site {
+fn site(planes: &Planes, means: &[f32], [x, y]: [usize; 2], grid: [usize; 2]) -> Site {
     let (luma, width) = (&planes.planes[0], planes.width);
     let rows = |[x, y]: [usize; 2], side: usize| {
         (y..y + side).map(move |row| &luma[row * width + x..row * width + x + side])
@@ -174,7 +190,7 @@ fn site(planes: &Planes, [x, y]: [usize; 2], grid: [usize; 2]) -> Site {
     let step = REACH - HALF;
     let around = [y - step, y, y + step]
         .into_iter()
-        .flat_map(|y| [x - step, x, x + step].map(|x| mean(window([x, y]))));
+        .flat_map(|y| [x - step, x, x + step].map(|x| means[y * width + x]));
     // The place in a block of JPEG.
     let place = [(x, grid[0]), (y, grid[1])].map(|(at, start)| (at + SIDE - start) % SIDE);
     // A window within a block.
@@ -194,11 +210,6 @@ fn block(planes: &Planes, [x, y]: [usize; 2], place: [usize; 2]) -> Option<[usiz
     let (left, top) = (x.checked_sub(place[0])?, y.checked_sub(place[1])?);
     let is_whole = left + SIDE <= planes.width && top + SIDE <= planes.height;
     is_whole.then_some([left, top])
-}
-
-/// The mean of the values of a window.
-fn mean<'a>(rows: impl Iterator<Item = &'a [f32]>) -> f32 {
-    rows.flatten().sum::<f32>() / (2 * HALF + 1).pow(2) as f32
 }
 
 /// The difference of the largest value and the least.
