@@ -115,7 +115,8 @@ impl<'a> Choice<'a> {
         Ok(stacked(chosen.strokes, areas, false))
     }
 
-    /// The marks that draw the picture where their edges are seen, in painting order; `None` where colours do not tell where that is.
+    /// The marks that draw the picture where their edges are seen, in painting order; `None` where shapes come
+    /// apart, edges are long, lines are left that nothing draws, or colours do not tell where edges are.
     pub(super) fn placed(&self, price: &(impl Fn(&Mark) -> f32 + Sync)) -> Option<Vec<Traced>> {
         // Where lines join blobs of their colour is no edge, so that descents find it.
         if self.flat.is_apart() {
@@ -128,15 +129,17 @@ impl<'a> Choice<'a> {
         self.keep_pens(&mut lines, &fills);
         let won = lines.iter().map(Option::is_some).collect();
         let chosen = self.chosen(&fills, lines, won, price).ok()?;
-        // Strokes that no region tells are to be fitted.
-        let is_unplaced =
-            |(votes, stroke): (&Votes, &Option<_>)| votes.is_empty() && stroke.is_some();
-        if self.votes.iter().zip(&chosen.strokes).any(is_unplaced) {
+        // What colours tell badly is to be fitted, and so are strokes that no region tells.
+        let is_told = |(votes, stroke): (&Votes, &Option<_>)| !votes.is_empty() || stroke.is_none();
+        let is_sure = self.votes.iter().zip(&chosen.strokes).all(is_told)
+            && placing.is_sure(&fills, &chosen.is_stroked);
+        // Where there is no damage, edges that colours do not tell are those of something else, such as gradients.
+        if !is_sure && self.flat.tracing.doubt == 0.0 {
             return None;
         }
         let count = chosen.strokes.iter().flatten().count();
-        let areas = placing.areas(&fills, &chosen.is_stroked, count)?;
-        Some(stacked(chosen.strokes, areas, true)).filter(|marks| !marks.is_empty())
+        let areas = placing.areas(&fills, &chosen.is_stroked, count);
+        Some(stacked(chosen.strokes, areas, is_sure)).filter(|marks| !marks.is_empty())
     }
 
     /// What draws the picture, if these strokes draw groups; or lines that came apart from blobs although strokes do not draw them.

@@ -51,7 +51,9 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
             let placed = paying(session, &canvases, marks, tracing);
             match is_faithful(session, &placed) {
                 true => placed,
-                // Areas where edges are seen draw another picture: colours told them wrongly.
+                // Damage hides where edges are exactly, so that a descent finds out.
+                false if tracing.doubt > 0.0 => fitted(placed),
+                // Colours told wrongly what there is.
                 false => paying(
                     session,
                     &canvases,
@@ -71,6 +73,14 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
     session.history.stage = None;
     session.plan_rest();
     Ok(Outcome::Over)
+}
+
+/// Marks that are to be fitted.
+fn fitted(mut traced: Vec<Traced>) -> Vec<Traced> {
+    traced
+        .iter_mut()
+        .for_each(|traced| traced.is_placed = false);
+    traced
 }
 
 /// The drawing on each surface, at full resolution.
@@ -98,8 +108,8 @@ pub(super) fn tracing(session: &Session<'_>) -> Tracing {
     }
 }
 
-/// Fidelity of areas that need no descent, dB. A guess.
-const FAITHFUL_DB: f64 = 36.0;
+/// Mean squared error of areas that need no descent: 36 dB. A guess.
+const FAITHFUL: f64 = 2.5e-4;
 
 /// True unless the drawing with marks that were traced where they are seen is less like the picture than descents make it.
 fn is_faithful(session: &mut Session<'_>, traced: &[Traced]) -> bool {
@@ -111,7 +121,7 @@ fn is_faithful(session: &mut Session<'_>, traced: &[Traced]) -> bool {
     let marks: Vec<Mark> = traced.iter().map(|traced| traced.mark.clone()).collect();
     let stage = session.drawing.last_stage();
     session.drawing.extend_by(&marks, stage);
-    let is_faithful = psnr_db(session.drawing.mse()) >= FAITHFUL_DB;
+    let is_faithful = session.drawing.mse() <= FAITHFUL;
     session.drawing.revert(before);
     is_faithful
 }

@@ -99,7 +99,7 @@ impl<'a> Flat<'a> {
         if explained(pixels, &mixtures) < LEAST_EXPLAINED {
             return None;
         }
-        let regions = Regions::of(&colors, mixtures, parts);
+        let regions = Regions::of(&colors, mixtures, parts, tracing.doubt);
         let neighbours = regions.neighbours();
         let translucent = match mattes {
             1 => Translucent::none(regions.list.len()),

@@ -48,18 +48,15 @@ impl<'a> Placing<'a> {
     }
 
     /// The areas of shapes, those of one colour joined, from back to front, beside so many strokes. Those of `left_out` regions are
-    /// not drawn. `None` where colours do not tell where their edges are.
+    /// not drawn.
     pub(in crate::trace) fn areas(
         &self,
         fills: &[Fill<Ring>],
         left_out: &[bool],
         strokes: usize,
-    ) -> Option<Vec<Filled>> {
+    ) -> Vec<Filled> {
         let fills = fills.iter().filter(|fill| !left_out[fill.region as usize]);
         let fills: Vec<Fill<Ring>> = fills.cloned().collect();
-        if fills.iter().any(|fill| fill.deviation >= SURE) {
-            return None;
-        }
         let joined = self.flat.joined(fills);
         let is_only = joined.len() == 1;
         let mut room = self
@@ -67,10 +64,16 @@ impl<'a> Placing<'a> {
             .tracing
             .most
             .saturating_sub(joined.len() + strokes);
-        Some(
-            self.flat
-                .painted(&joined, |rings| compound::paths(rings, is_only, &mut room)),
-        )
+        self.flat
+            .painted(&joined, |rings| compound::paths(rings, is_only, &mut room))
+    }
+
+    /// True if colours tell where the edges of shapes are, but of those of `left_out` regions.
+    pub(in crate::trace) fn is_sure(&self, fills: &[Fill<Ring>], left_out: &[bool]) -> bool {
+        let fills = fills.iter().filter(|fill| !left_out[fill.region as usize]);
+        fills
+            .map(|fill| fill.deviation)
+            .all(|deviation| deviation < SURE)
     }
 
     /// The shape of a layer by its edges.

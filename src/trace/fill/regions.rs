@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::super::areas::{LEVEL, Pixel, away, distance2, mix};
 use super::super::parts::{Part, Parts};
-use super::colors::{self, CANVAS, Colors};
+use super::colors::{self, CANVAS, Colors, NONE, SHADES};
 use super::mixtures::{Mixture, best_mixture};
 use crate::math::{Normal, median};
 use crate::scene::Shade;
@@ -38,7 +38,12 @@ pub(super) struct Regions {
 
 impl Regions {
     /// The regions of pixels as mixtures. What is too small, or only edges, becomes part of what is beside it.
-    pub(super) fn of(colors: &Colors<'_>, mut mixtures: Vec<Mixture>, parts: &Parts) -> Self {
+    pub(super) fn of(
+        colors: &Colors<'_>,
+        mut mixtures: Vec<Mixture>,
+        parts: &Parts,
+        doubt: f32,
+    ) -> Self {
         let width = colors.pixels.width;
         // 1. Connected pixels of one label are a region.
         let by_label = |mixtures: &[Mixture]| connected(mixtures.len(), width, |i| mixtures[i].own);
@@ -46,7 +51,18 @@ impl Regions {
         if dissolve(colors, &of, &members, &mut mixtures) {
             (of, members) = by_label(&mixtures);
         }
-        // 2. Small regions join a neighbour. That can leave others small, such as the two halves of a ring, so it repeats.
+        // 2. What the rest of a damage explains is nothing of its own, the smallest first.
+        let largest = members.iter().map(Vec::len).max().unwrap_or_default();
+        let sizes = (0..).map(|k| Rank::Smaller(8 << (2 * k)));
+        let sizes =
+            sizes.take_while(|rank| matches!(rank, Rank::Smaller(least) if *least <= largest));
+        let ranks = [Rank::Shaded].into_iter().chain(sizes);
+        for rank in ranks.filter(|_| doubt > 0.0) {
+            if leave_to_others(colors, (&of, &members), &mut mixtures, (rank, doubt)) {
+                (of, members) = by_label(&mixtures);
+            }
+        }
+        // 3. Small regions join a neighbour. That can leave others small, such as the two halves of a ring, so it repeats.
         for _ in 0..6 {
             let is_small = |pixels: &Vec<u32>| is_small(colors, &mixtures, pixels);
             let small: Vec<bool> = members.iter().map(is_small).collect();
@@ -56,13 +72,13 @@ impl Regions {
             absorb(colors, &of, &members, &small, &mut mixtures);
             (of, members) = by_label(&mixtures);
         }
-        // 3. A shape that came apart into lines and blobs is a region for each.
+        // 4. A shape that came apart into lines and blobs is a region for each.
         let mut parts_of = Vec::new();
         if !parts.are_whole() {
             parts_of = self::parts_of(&of, &members, parts, |i| mixtures[i].own == CANVAS);
             (of, members) = connected(of.len(), width, |i| (of[i], parts_of[i]));
         }
-        // 4. An antialiased pixel belongs to a second region by a share.
+        // 5. An antialiased pixel belongs to a second region by a share.
         let (second, share) = seconds(colors, &mixtures, &of);
         let region = |pixels: Vec<u32>| {
             let label = mixtures[pixels[0] as usize].own;
@@ -248,6 +264,129 @@ fn dissolve(
     is_found
 }
 
+/// Which regions are left to which others.
+#[derive(Debug, Clone, Copy)]
+enum Rank {
+    /// Those of gradients to those of colours.
+    Shaded,
+    /// Those of fewer pixels to those that have as many.
+    Smaller(usize),
+}
+
+/// Makes mixtures of the pixels of regions of lower rank whose own colour explains less than its price: what is left of
+/// a damage of so much `doubt`, in levels, explains their colours as well. Returns whether there were such.
+fn leave_to_others(
+    colors: &Colors<'_>,
+    (of, members): (&[u32], &[Vec<u32>]),
+    mixtures: &mut [Mixture],
+    (rank, doubt): (Rank, f32),
+) -> bool {
+    let (pixels, width) = (colors.pixels, colors.pixels.width);
+    let is_low = |region: u32| {
+        let region = &members[region as usize];
+        match rank {
+            Rank::Shaded => (SHADES..NONE).contains(&mixtures[region[0] as usize].own),
+            Rank::Smaller(least) => region.len() < least,
+        }
+    };
+    // The labels of regions of higher rank beside each one of lower rank.
+    let mut near: Vec<Vec<u16>> = vec![Vec::new(); members.len()];
+    let mut touch = |i: usize, k: usize| {
+        for (a, b) in [(i, k), (k, i)] {
+            let (small, large) = (of[a], of[b]);
+            let label = mixtures[b].own;
+            if is_low(small) && !is_low(large) && !near[small as usize].contains(&label) {
+                near[small as usize].push(label);
+            }
+        }
+    };
+    for i in 0..of.len() {
+        if !(i + 1).is_multiple_of(width) && of[i] != of[i + 1] {
+            touch(i, i + 1);
+        }
+        if i + width < of.len() && of[i] != of[i + width] {
+            touch(i, i + width);
+        }
+    }
+    // What a pixel differs by, beyond what is left of a damage all over a place: that is alike in many pixels, and tells nothing.
+    let slack = doubt * LEVEL;
+    let error2 = |i: usize, drawn: &Pixel| {
+        let target = pixels.target.at(i);
+        let away = target.iter().zip(drawn);
+        let away = away.map(|(a, b)| ((a - b).abs() - slack).max(0.0));
+        away.map(|a| a * a).sum::<f32>()
+    };
+    let error = |i: usize, mixture: &Mixture| {
+        let colors = [mixture.own, mixture.other].map(|label| colors.at(label, i));
+        let drawn = mix(&colors[0], &colors[1], mixture.share);
+        let sigma = REST * doubt * LEVEL;
+        let edge = match mixture.share {
+            0.0 => 0.0,
+            _ => EDGES * EDGES * distance2(&colors[0], &colors[1]),
+        };
+        (error2(i, &drawn), sigma * sigma + edge)
+    };
+    let nearest = |near: &[u16], i: usize| {
+        let pure = near.iter().map(|&label| Mixture::pure(label));
+        let first = |best: Mixture, other: Mixture| match error(i, &other).0 < error(i, &best).0 {
+            true => other,
+            false => best,
+        };
+        pure.reduce(first).unwrap_or(Mixture::pure(CANVAS))
+    };
+    let mixed = |(region, near): (&Vec<u32>, &Vec<u16>)| {
+        if near.is_empty() {
+            return None;
+        }
+        let most = 2.0 * PRICE * NUMBERS;
+        let mut mean = [0.0; 6];
+        for &i in region {
+            let target = pixels.target.at(i as usize);
+            mean.iter_mut()
+                .zip(target)
+                .for_each(|(sum, v)| *sum += v / region.len() as f32);
+        }
+        let mut gain = 0.0;
+        let mut found = Vec::with_capacity(region.len());
+        for &i in region {
+            let i = i as usize;
+            // An edge is two pixels wide.
+            let is_edge = pixels.around(i, 2).any(|k| of[k] != of[i]);
+            let mixture = match is_edge {
+                true => best_mixture(colors, near, i),
+                false => nearest(near, i),
+            };
+            let (of_others, variance) = error(i, &mixture);
+            let own = error(i, &mixtures[i]).0.min(error2(i, &mean));
+            gain += (of_others - own) / variance;
+            if gain >= most {
+                return None;
+            }
+            found.push((i, mixture));
+        }
+        Some(found)
+    };
+    let found: Vec<(usize, Mixture)> = members
+        .iter()
+        .zip(&near)
+        .filter_map(mixed)
+        .flatten()
+        .collect();
+    for &(i, mixture) in &found {
+        mixtures[i] = mixture;
+    }
+    !found.is_empty()
+}
+
+/// Numbers of a thing: a circle and its colour.
+const NUMBERS: f32 = 6.0;
+/// Price of a number, nats, as that of outlines.
+const PRICE: f32 = 5.0;
+/// Deviation of a channel where a damage was, in units of the doubt.
+const REST: f32 = 1.0;
+/// Deviation of the pixels of an edge, in units of the contrast of its sides.
+const EDGES: f32 = 0.02;
+
 /// Root of the squared error below which a mixture explains a pixel of a thin region. A guess.
 const EDGE: f32 = 8.0 * LEVEL;
 
@@ -429,6 +568,9 @@ fn color(colors: &Colors<'_>, share: &[f32], pixels: &[u32], label: u16) -> Pixe
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::areas::{Pixels, Planes};
+    use super::super::mixtures;
+    use super::super::shades::Shaded;
     use super::*;
 
     /// The regions of a picture in letters, each as a letter of its own.
@@ -447,6 +589,42 @@ mod tests {
         let rows = letters.as_bytes().chunks(rows[0].len());
         rows.map(|row| String::from_utf8_lossy(row).into_owned())
             .collect()
+    }
+
+    /// A page of two greys side by side, with a speck of so many levels less on the lighter one.
+    fn speck(levels: f32) -> Pixels<'static> {
+        let value = |i: usize| match (i % 40, i / 40) {
+            (10..14, 10..13) => 1.0 - levels * LEVEL,
+            (..20, _) => 1.0,
+            _ => 0.2,
+        };
+        let plane: Vec<f32> = (0..40 * 24).map(value).collect();
+        let planes = |plane: Vec<f32>| Planes(vec![plane.into(); 3]);
+        Pixels {
+            width: 40,
+            height: 24,
+            target: planes(plane),
+            canvas: planes(vec![1.0; 40 * 24]),
+            weights: None,
+        }
+    }
+
+    /// The number of regions of a page with a speck, if colours may be off by so much.
+    fn regions_of_speck(levels: f32, doubt: f32) -> usize {
+        let pixels = speck(levels);
+        let shaded = Shaded::none(&pixels);
+        let (mut colors, mut labels) = colors::flat_colors(&pixels, shaded, 1, 0.0);
+        let mixtures = mixtures::mixtures(&mut colors, &mut labels);
+        let parts = Parts::of(&[], 40, 40 * 24);
+        Regions::of(&colors, mixtures, &parts, doubt).list.len()
+    }
+
+    #[test]
+    fn a_speck_is_a_region_if_no_damage_explains_it() {
+        assert_eq!(regions_of_speck(16.0, 0.0), 3);
+        assert_eq!(regions_of_speck(16.0, 2.0), 3);
+        assert_eq!(regions_of_speck(16.0, 8.0), 2);
+        assert_eq!(regions_of_speck(60.0, 8.0), 3);
     }
 
     #[test]
