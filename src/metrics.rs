@@ -68,6 +68,15 @@ impl Quality {
     }
 }
 
+/// Share of the small things of `reference` that `picture` keeps, as [`Quality::details_kept`].
+///
+/// # Errors
+/// [`ErrorKind::Picture`] when their sizes differ.
+pub fn details_kept(reference: &Image, picture: &Image) -> Result<Option<f64>> {
+    let [reference, picture] = both_on_white(reference, picture)?;
+    Ok(Details::of(&reference, details::SEEN).kept(&picture))
+}
+
 /// Agreement of two renders of the same drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {

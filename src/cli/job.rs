@@ -8,7 +8,8 @@ use strokefit::fit::{self, DEFAULT_STROKES, Fit, Observer, PIXELS_PER_STROKE, Pr
 use strokefit::image::Image;
 use strokefit::metrics::{Agreement, psnr_db};
 use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
-use strokefit::scene::Dropped;
+use strokefit::restore::Paper;
+use strokefit::scene::{Dropped, Marks};
 use strokefit::verify::MIN_AGREEMENT_DB;
 
 use super::hint::Hint;
@@ -193,12 +194,24 @@ impl<'a> Job<'a> {
                 "{name}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more"
             ));
         }
+        let is_white = fit.damage.is_some_and(|damage| damage.uneven_light);
+        if config.paper == Paper::White && !is_white {
+            complain(format_args!(
+                "{name}: nothing became white: no paper was found that is not white already, and with --literal or --psnr none is looked for"
+            ));
+        }
         let budget = config.budget;
         if let Some(most) = budget.bytes.filter(|_| is_blank(&drawn.judged)) {
             return missed(format!(
                 "no stroke fits in {most} bytes: the empty page takes {}, and a first stroke about {FIRST_STROKE_BYTES} more",
                 svg.len()
             ));
+        }
+        if config.marks == Marks::Areas && is_blank(&drawn.judged) {
+            complain(format_args!(
+                "{name}: the page is empty: the picture has no areas of one colour or gradient: give --marks auto"
+            ));
+            return Status::Failed;
         }
         tell_poor(&drawn.judged, &name);
         if !drawn.judged.holds() {

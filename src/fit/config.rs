@@ -12,6 +12,7 @@ use super::widths::Widths;
 use crate::coverage::CoverageSchedule;
 use crate::error::{Error, Result};
 use crate::math;
+use crate::restore::Paper;
 use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, Shade, quantum};
 use crate::svg::{Form, Order, WriteOptions};
 use crate::threads::Workers;
@@ -47,6 +48,9 @@ pub struct Config {
     /// Draw noise, traces of JPEG and other damage of the picture as they are
     #[cfg_attr(feature = "cli", arg(long))]
     pub literal: bool,
+    /// What becomes of the paper of a page that was scanned or photographed
+    #[cfg_attr(feature = "cli", arg(long, default_value_t))]
+    pub paper: Paper,
     /// Which errors count (default: eye, but exact with --psnr)
     #[cfg_attr(feature = "cli", arg(long))]
     pub look: Option<ErrorWeighting>,
@@ -113,6 +117,7 @@ impl Default for Config {
             progressive: false,
             marks: Marks::default(),
             literal: false,
+            paper: Paper::default(),
             look: None,
             opaque: false,
             coverage: CoverageSchedule::default(),

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::base::Base;
-use super::config::{Config, Execution};
+use super::config::{Background, Config, Execution};
 use super::drawing::focus::Focus;
 use super::multi_start;
 use super::result::Fit;
@@ -13,7 +13,7 @@ use super::task::Task;
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
-use crate::restore;
+use crate::restore::{self, Paper};
 
 /// Draws pictures with strokes.
 ///
@@ -134,9 +134,14 @@ impl<'a> Fitter<'a> {
         let pool = self.execution.pool()?;
         // 1. Restore the picture if it is damaged and damage is not to be drawn. A given fidelity covers everything in the picture.
         let is_literal = task.config.literal || task.config.budget.psnr_db.is_some();
+        // Paper that is not drawn is as good as white.
+        let paper = match task.config.background {
+            Background::None => Paper::White,
+            _ => task.config.paper,
+        };
         let restored = match is_literal {
             true => None,
-            false => pool.install(|| restore::restored(picture))?,
+            false => pool.install(|| restore::restored(picture, paper))?,
         };
         task.doubt = restored.as_ref().map_or(0.0, |r| r.damage.doubt());
         let target = restored.as_ref().map_or(picture, |r| &r.picture);
@@ -154,7 +159,8 @@ impl<'a> Fitter<'a> {
             .install(|| multi_start::draw(&task, target, level, (watch, since), self.checkpoint))?;
         // The drawing is judged by the picture that was given.
         if let Some(restored) = restored {
-            fit.target = picture.reduced(fit.target.width(), fit.target.height());
+            let given = picture.reduced(fit.target.width(), fit.target.height());
+            fit.meant = Some(std::mem::replace(&mut fit.target, given));
             fit.damage = Some(restored.damage);
         }
         Ok(fit)

@@ -7,7 +7,7 @@ use super::{Config, Execution};
 use crate::error::{Error, Result};
 
 /// The names of all options.
-pub const OPTIONS: [&str; 27] = [
+pub const OPTIONS: [&str; 28] = [
     "strokes",
     "psnr",
     "bytes",
@@ -17,6 +17,7 @@ pub const OPTIONS: [&str; 27] = [
     "marks",
     "progressive",
     "literal",
+    "paper",
     "look",
     "opaque",
     "coverage",

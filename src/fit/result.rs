@@ -27,6 +27,8 @@ pub struct Fit {
     pub target: Image,
     /// Damage of the picture, if some was recognised: the drawing is then of the restored picture.
     pub damage: Option<Damage>,
+    /// The picture that was drawn, if that is not the target: without its damage.
+    pub meant: Option<Image>,
     /// Our own render of `scene` with the edge of a finished drawing; with alpha if the drawing has no
     /// background and the picture has alpha.
     pub soft: Image,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::fit::{Base, Fit, Focus};
-use crate::metrics::{Quality, null_is_infinite};
+use crate::metrics::{self, Quality, null_is_infinite};
 use crate::scene::Scene;
 use crate::verify::{self, MIN_AGREEMENT_DB, OnMattes, Verdict};
 
@@ -49,8 +49,14 @@ impl Judged {
     /// As [`verify::verify`].
     pub fn new(fit: Fit) -> Result<Self> {
         let svg = fit.svg();
-        let soft = Quality::between(&fit.target, &fit.soft)?;
-        let verdict = verify::verify(&svg, &fit.target, &fit.soft)?;
+        let mut soft = Quality::between(&fit.target, &fit.soft)?;
+        let mut verdict = verify::verify(&svg, &fit.target, &fit.soft)?;
+        // Noise and paper that were left out are no details.
+        if let Some(meant) = &fit.meant {
+            let drawn = verify::render_like(&svg, meant, [1.0; 3])?;
+            soft.details_kept = metrics::details_kept(meant, &fit.soft)?;
+            verdict.fidelity.details_kept = metrics::details_kept(meant, &drawn)?;
+        }
         let has_alpha = fit.target.alpha().is_some();
         let alpha = has_alpha.then(|| verify::on_mattes(&svg, &fit.target));
         let focus = fit.focus.as_ref().map(|focus| on_focus(focus, &svg, &fit));

@@ -1,4 +1,5 @@
-//! Uneven light on paper, and its spots: a smooth field, by which a scanned or photographed page is divided.
+//! Uneven light on paper, and its spots: a smooth field, by which a scanned or photographed page is divided. Paper keeps its own colour,
+//! unless it is to be white.
 
 use std::ops::Range;
 
@@ -18,6 +19,12 @@ const CELLS: usize = 12;
 const ROUNDS: usize = 4;
 /// Largest relative difference of paper and the light on it.
 const NEAR: f32 = 0.06;
+/// As [`NEAR`], of cells, in units of the median one, and at least. Of a normal distribution 0.1 % are farther away than five times the
+/// median.
+const OUTLYING: f32 = 5.0;
+const LEAST_NEAR: f32 = 0.004;
+/// Largest relative difference of paper, without its noise, and the light on it.
+const LIKE: f32 = 0.03;
 /// Least share of paper in a page.
 const LEAST_PAPER: f32 = 0.7;
 /// Least luma of paper, levels.
@@ -28,35 +35,38 @@ const LEAST_RANGE: f32 = 12.0;
 const SPOTS: Range<f32> = 1.0..6.0;
 /// Spots are cleared that differ from the paper by less than so many times their RMS.
 const CLEARED: f32 = 3.0;
-/// Least luma of paper that is white, levels.
-const WHITE_LUMA: f32 = 200.0;
-/// Most chroma of paper that is white, levels.
-const WHITE_CHROMA: f32 = 12.0;
 
-/// Divides a page by the light on it and clears the spots of its paper, so that this has one colour, white if it is nearly white;
-/// false if the picture is no page, or its paper is even.
+/// Divides a page by the light on it and clears the spots of its paper, so that this has one colour, its mean; false if the picture is
+/// no page, or its paper is even.
 pub(super) fn evened(planes: &mut Planes) -> bool {
     let Some(page) = Page::of(planes) else {
         return false;
     };
-    let [low, high] = page.range;
-    let tones = [0, 1, 2].map(|c| page.tone(&planes.planes[c]));
+    let tones = page.tones(planes);
     let has_spots = SPOTS.contains(&tones[0].spread);
-    if !has_spots && high - low < LEAST_RANGE {
+    if !has_spots && page.range[1] - page.range[0] < LEAST_RANGE {
         return false;
     }
-    for plane in &mut planes.planes {
-        let pixels = plane.iter_mut().zip(&page.light);
-        pixels.for_each(|(value, light)| *value *= high / light);
-    }
+    page.divide(planes);
     if has_spots {
         clear(planes, &tones);
     }
-    let [luma, chromas @ ..] = tones.each_ref().map(|tone| tone.middle);
-    let is_tinted = chromas.iter().any(|c| c.abs() > WHITE_CHROMA);
-    if luma >= WHITE_LUMA && !is_tinted {
-        whiten(planes, &tones);
+    true
+}
+
+/// Divides a page by the light on it and makes its paper white; false if the picture is no page, or its paper is white.
+pub(super) fn whitened(planes: &mut Planes) -> bool {
+    let Some(page) = Page::of(planes) else {
+        return false;
+    };
+    let tones = page.tones(planes);
+    let is_white = tones[0].middle > WHITE - 1.0 && page.range[1] - page.range[0] < 1.0;
+    if is_white {
+        return false;
     }
+    page.divide(planes);
+    clear(planes, &tones);
+    whiten(planes, &tones);
     true
 }
 
@@ -64,8 +74,9 @@ pub(super) fn evened(planes: &mut Planes) -> bool {
 struct Page {
     /// Luma of the light at each pixel.
     light: Vec<f32>,
-    /// The least and the largest luma of the light.
+    /// The least and the largest luma of the light, and the mean one.
     range: [f32; 2],
+    mean: f32,
     /// The pixels that are paper.
     paper: Vec<usize>,
 }
@@ -81,21 +92,35 @@ impl Page {
         let light: Vec<f32> = (0..width * height).map(|i| field.at(place(i))).collect();
         let wider = |[low, high]: [f32; 2], v: &f32| [low.min(*v), high.max(*v)];
         let range = light.iter().fold([f32::MAX, f32::MIN], wider);
+        let mean = light.iter().sum::<f32>() / light.len() as f32;
         let luma = &planes.planes[0];
-        let is_paper = |i: &usize| (luma[*i] / light[*i] - 1.0).abs() < NEAR;
+        let is_paper = |i: &usize| (luma[*i] / light[*i] - 1.0).abs() < LIKE;
         let paper: Vec<usize> = (0..light.len()).filter(is_paper).collect();
         let is_page =
             range[0] >= LEAST_LUMA && paper.len() as f32 >= LEAST_PAPER * light.len() as f32;
         is_page.then_some(Self {
             light,
             range,
+            mean,
             paper,
         })
     }
 
-    /// The paper in one plane of the page, divided by the light.
+    /// Divides a page by its light, so that it has the mean one.
+    fn divide(&self, planes: &mut Planes) {
+        for plane in &mut planes.planes {
+            let pixels = plane.iter_mut().zip(&self.light);
+            pixels.for_each(|(value, light)| *value *= self.mean / light);
+        }
+    }
+
+    /// The paper in each plane of the page, divided by the light.
+    fn tones(&self, planes: &Planes) -> [Tone; 3] {
+        [0, 1, 2].map(|c| self.tone(&planes.planes[c]))
+    }
+
     fn tone(&self, plane: &[f32]) -> Tone {
-        let even = |&i: &usize| plane[i] * (self.range[1] / self.light[i]);
+        let even = |&i: &usize| plane[i] * (self.mean / self.light[i]);
         let values = || self.paper.iter().map(even);
         let middle = median(values()).unwrap_or_default();
         let away = median(values().map(|v| (v - middle).abs())).unwrap_or_default();
@@ -149,11 +174,16 @@ impl Field {
     fn of(planes: &Planes) -> Option<Self> {
         let mut cells = cells(planes);
         let mut field = Self::fitted(&cells)?;
-        // Ink darkens cells, so that those far below the field are left out and it is fitted anew.
-        for _ in 0..ROUNDS {
-            let is_near =
-                |(place, value): &([f32; 2], f32)| *value > (1.0 - NEAR) * field.at(*place);
-            let kept: Vec<([f32; 2], f32)> = cells.iter().copied().filter(is_near).collect();
+        // Ink darkens cells, so that those far below the field are left out and it is fitted anew. Then those that are as far away as
+        // few cells of paper are: a thing that is lighter than the paper would bend the field.
+        for round in 0..2 * ROUNDS {
+            let away = |(place, value): &([f32; 2], f32)| *value / field.at(*place) - 1.0;
+            let usual = median(cells.iter().map(|cell| away(cell).abs())).unwrap_or_default();
+            let is_near = |cell: &&([f32; 2], f32)| match round < ROUNDS {
+                true => away(cell) > -NEAR,
+                false => away(cell).abs() <= (OUTLYING * usual).clamp(LEAST_NEAR, NEAR),
+            };
+            let kept: Vec<([f32; 2], f32)> = cells.iter().filter(is_near).copied().collect();
             if (kept.len() as f32) < LEAST_PAPER * cells.len() as f32 {
                 return None;
             }

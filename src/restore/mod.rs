@@ -30,6 +30,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::image::Image;
+use crate::words::words;
 use labels::Labels;
 use noise::Noise;
 use planes::Planes;
@@ -43,6 +44,19 @@ const LEAST_SHARE: f32 = 0.5;
 const FAR: f32 = 3.6;
 /// As [`FAR`], beside edges.
 const NEAR: f32 = 5.0;
+
+/// What becomes of the paper of a page.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Paper {
+    /// It keeps its colour; uneven light and spots go
+    #[default]
+    Own,
+    /// It becomes white, and as much lighter what is on it
+    White,
+}
+
+words!(Paper, "a paper": Own = "own", White = "white");
 
 /// The picture that a damaged one is meant to be, and what has happened to it.
 #[derive(Debug, Clone)]
@@ -66,7 +80,7 @@ pub struct Damage {
     pub ringing: f32,
     /// True if colours were kept at half the resolution.
     pub halved_chroma: bool,
-    /// True if it is a page in uneven light, or of spotted paper.
+    /// True if it is a page in uneven light, of spotted paper, or of paper that was made white.
     pub uneven_light: bool,
 }
 
@@ -115,12 +129,32 @@ impl fmt::Display for Damage {
     }
 }
 
-/// The picture that `picture` is meant to be; `None` if it is not damaged, as far as can be told. Alpha stays as it
+/// The picture that `picture` is meant to be; `None` if it is not damaged, as far as can be told, and its paper stays. Alpha stays as it
 /// is, but for the stairs of one that has no shades.
 ///
 /// # Errors
 /// None in practice: a restored picture has the size of the given one and finite values.
-pub fn restored(picture: &Image) -> Result<Option<Restored>> {
+pub fn restored(picture: &Image, paper: Paper) -> Result<Option<Restored>> {
+    let restored = undamaged(picture)?;
+    if paper == Paper::Own {
+        return Ok(restored);
+    }
+    let mut planes = Planes::of(restored.as_ref().map_or(picture, |r| &r.picture));
+    if planes.alpha.is_some() || !light::whitened(&mut planes) {
+        return Ok(restored);
+    }
+    let damage = Damage {
+        uneven_light: true,
+        ..restored.map_or(Damage::default(), |r| r.damage)
+    };
+    Ok(Some(Restored {
+        picture: planes.image()?,
+        damage,
+    }))
+}
+
+/// The picture without its damage, if it has some.
+fn undamaged(picture: &Image) -> Result<Option<Restored>> {
     let labels = Labels::of(picture, Labels::MOST);
     if let Some(restored) = labels.map_or(Ok(None), |labels| of_few_colors(picture, &labels))? {
         return Ok(Some(restored));

@@ -68,8 +68,8 @@ fn files_that_say_nonsense_are_refused_with_the_line() {
         ("preset = 'bst'", ["fit.toml:1", "bst", "best"]),
         ("opaque = 'yes'", ["fit.toml:1", "opaque", "true or false"]),
         (
-            "[paper]\nopaque = true",
-            ["fit.toml:1", "paper", "no option"],
+            "[sheet]\nopaque = true",
+            ["fit.toml:1", "sheet", "no option"],
         ),
     ] {
         place.file("fit.toml", text);

@@ -1,13 +1,19 @@
 //! Damage is recognised and not drawn; what is clean is drawn as it is.
 
 use crate::support::{drawn, of_psnr, picture, rendered, within};
+use strokefit::Result;
 use strokefit::fit::{Background, Colors, Config, Fit};
 use strokefit::image::Image;
 use strokefit::metrics::Quality;
-use strokefit::restore::{self, Damage};
+use strokefit::restore::{self, Damage, Paper, Restored};
 
 fn default(picture: &Image) -> Fit {
     drawn(picture, &Config::default())
+}
+
+/// The picture that a damaged one is meant to be, with its own paper.
+fn meant(picture: &Image) -> Result<Option<Restored>> {
+    restore::restored(picture, Paper::Own)
 }
 
 /// The file against another picture than the one that was drawn, dB.
@@ -65,10 +71,10 @@ fn clean_pictures_have_no_damage() {
         "noto-rocket.png",
     ];
     for name in names {
-        let found = restore::restored(&picture(name).flattened([1.0; 3])).unwrap();
-        assert_eq!(found.map(|meant| meant.damage), None, "{name}");
+        let found = meant(&picture(name).flattened([1.0; 3])).unwrap();
+        assert_eq!(found.map(|found| found.damage), None, "{name}");
     }
-    assert!(restore::restored(&flat_art()).unwrap().is_none());
+    assert!(meant(&flat_art()).unwrap().is_none());
 }
 
 #[test]
@@ -134,34 +140,34 @@ fn with_alpha(picture: Image, is_binary: bool) -> Image {
 fn noise_on_transparency_is_not_drawn() {
     let clean = with_alpha(flat_art(), false);
     let noisy = with_alpha(noisy(&flat_art(), 8.0), false);
-    let meant = restore::restored(&noisy).unwrap().unwrap();
+    let found = meant(&noisy).unwrap().unwrap();
     assert!(
-        (3.0..10.0).contains(&meant.damage.noise),
+        (3.0..10.0).contains(&found.damage.noise),
         "{:?}",
-        meant.damage
+        found.damage
     );
-    assert_eq!(meant.picture.alpha(), clean.alpha());
+    assert_eq!(found.picture.alpha(), clean.alpha());
     let db = |picture: &Image| Quality::between(&clean, picture).unwrap().psnr_db;
     assert!(
-        db(&meant.picture) > db(&noisy) + 6.0,
+        db(&found.picture) > db(&noisy) + 6.0,
         "{} {}",
-        db(&meant.picture),
+        db(&found.picture),
         db(&noisy)
     );
-    assert!(restore::restored(&clean).unwrap().is_none());
+    assert!(meant(&clean).unwrap().is_none());
 }
 
 #[test]
 fn stairs_of_transparency_become_smooth() {
     let grey = Image::filled(128, 128, [0.4; 3]).unwrap();
     let (smooth, stairs) = (with_alpha(grey.clone(), false), with_alpha(grey, true));
-    let meant = restore::restored(&stairs).unwrap().unwrap();
-    assert!(meant.damage.stairs);
+    let found = meant(&stairs).unwrap().unwrap();
+    assert!(found.damage.stairs);
     let mse = |picture: &Image| Quality::between(&smooth, picture).unwrap().mse;
     assert!(
-        mse(&meant.picture) < 0.8 * mse(&stairs),
+        mse(&found.picture) < 0.8 * mse(&stairs),
         "{} {}",
-        mse(&meant.picture),
+        mse(&found.picture),
         mse(&stairs)
     );
 }
@@ -178,9 +184,9 @@ fn specks_are_left_as_they_are() {
         .unwrap()
         .with_alpha(alpha.clone())
         .unwrap();
-    let meant = restore::restored(&picture).unwrap().unwrap();
-    assert!(meant.damage.stairs);
-    let kept = meant.picture.alpha().unwrap();
+    let found = meant(&picture).unwrap().unwrap();
+    assert!(found.damage.stairs);
+    let kept = found.picture.alpha().unwrap();
     let is_kept = |i: usize| kept[i] == alpha[i];
     assert!(
         (0..128 * 128)
@@ -205,7 +211,7 @@ fn squares_on_a_grid_are_meant() {
     let sprite = Image::from_fn(96, 96, 1, |x, y, _| {
         f32::from(u8::from((x / 8 + y / 8) % 3 == 0 || x / 8 == 4))
     });
-    assert!(restore::restored(&sprite.unwrap()).unwrap().is_none());
+    assert!(meant(&sprite.unwrap()).unwrap().is_none());
 }
 
 #[test]
@@ -269,28 +275,77 @@ fn spots_of_scanned_paper_are_no_content() {
         paper * (1.0 - 0.8 * line(x, y))
     });
     let scan = noisy(&scan.unwrap(), 2.0);
-    let meant = restore::restored(&scan).unwrap().unwrap();
-    assert!(meant.damage.uneven_light);
-    let pixels = (0..160 * 160).map(|i| (line(i % 160, i / 160), meant.picture.planes()[0][i]));
-    let [paper, ink] = [false, true].map(|is_ink| {
-        let of = pixels.clone().filter(|(share, _)| match is_ink {
-            true => *share == 1.0,
-            false => *share == 0.0,
-        });
-        of.map(|(_, value)| value).collect::<Vec<_>>()
-    });
-    let white = paper.iter().filter(|v| **v > 0.998).count();
-    assert!(
-        white as f32 > 0.98 * paper.len() as f32,
-        "{white} of {}",
-        paper.len()
-    );
-    assert!(ink.iter().all(|v| *v < 0.4));
+    // The paper keeps its colour, or is white if that is asked for.
+    for (paper, color) in [(Paper::Own, 0.91), (Paper::White, 1.0)] {
+        let found = restore::restored(&scan, paper).unwrap().unwrap();
+        assert!(found.damage.uneven_light);
+        let pixels = (0..160 * 160).map(|i| (line(i % 160, i / 160), found.picture.planes()[0][i]));
+        let of = |share: f32| pixels.clone().filter(move |pixel| pixel.0 == share);
+        let is_paper = |value: f32| (value - color).abs() < 2.0 / 255.0;
+        let alike = of(0.0).filter(|pixel| is_paper(pixel.1)).count();
+        let all = of(0.0).count();
+        assert!(alike as f32 > 0.98 * all as f32, "{alike} of {all}");
+        assert!(of(1.0).all(|pixel| pixel.1 < 0.4));
 
-    let fit = default(&scan);
-    // The line comes in 6 to 9 pieces by the noise; spots would be dozens of marks.
-    assert!(fit.scene.len() <= 9, "{} marks", fit.scene.len());
-    assert_eq!(fit.scene.background, Some([1.0; 3]));
+        let config = Config {
+            paper,
+            ..Config::default()
+        };
+        let fit = drawn(&scan, &config);
+        // The line comes in 6 to 9 pieces by the noise; spots would be dozens of marks.
+        assert!(fit.scene.len() <= 9, "{} marks", fit.scene.len());
+        assert!(fit.scene.background.unwrap().into_iter().all(is_paper));
+    }
+}
+
+#[test]
+fn what_is_lighter_than_its_page_stays_lighter() {
+    // A red disc with a white border on cream, with the noise of a camera.
+    let sticker = |x: usize, y: usize| {
+        let away = (x as f32 - 79.5).hypot(y as f32 - 79.5);
+        [54.0, 46.0].map(|radius| (radius - away).clamp(0.0, 1.0))
+    };
+    let cream = [0.955, 0.94, 0.905];
+    let clean = Image::from_fn(160, 160, 3, |x, y, c| {
+        let [border, disc] = sticker(x, y);
+        let page = cream[c] + border * (1.0 - cream[c]);
+        page + disc * ([0.8, 0.2, 0.2][c] - page)
+    });
+    let fit = default(&noisy(&clean.unwrap(), 3.0));
+    let page = fit.scene.background.unwrap();
+    for (page, cream) in page.into_iter().zip(cream) {
+        assert!((page - cream).abs() < 3.0 / 255.0, "{page} of {cream}");
+    }
+    let is_white = |color: [f32; 3]| color.iter().all(|v| *v > 0.985);
+    assert!(fit.scene.marks().any(|mark| is_white(mark.color())));
+    assert!(fit.scene.len() <= 4, "{} marks", fit.scene.len());
+}
+
+#[test]
+fn what_is_darker_than_its_page_is_no_shadow() {
+    // A large pale thing in the middle of a white page, with noise that is cut off at white.
+    let clean = Image::from_fn(160, 160, 3, |x, y, _| {
+        let away = (x as f32 - 84.5).hypot(y as f32 - 92.5);
+        1.0 - 0.12 * (50.0 - away).clamp(0.0, 1.0)
+    });
+    let found = meant(&noisy(&clean.unwrap(), 8.0)).unwrap().unwrap();
+    assert!(!found.damage.uneven_light, "{:?}", found.damage);
+}
+
+#[test]
+fn details_are_counted_without_noise_and_paper() {
+    let marked = Image::from_fn(160, 160, 3, |x, y, _| {
+        let is_dot = x % 20 < 4 && y % 20 < 4;
+        if is_dot {
+            0.2
+        } else {
+            0.9 - 0.1 * x as f32 / 160.0
+        }
+    });
+    let fit = default(&noisy(&marked.unwrap(), 3.0));
+    let judged = strokefit::report::Judged::new(fit).unwrap();
+    let kept = judged.verdict.fidelity.details_kept.unwrap();
+    assert!(kept > 0.9, "{kept}");
 }
 
 #[test]
@@ -341,7 +396,7 @@ fn level_and_upright_lines_have_no_stairs() {
     let dark = |i: usize| (i % 200 + 4) % 16 < 2 || (i / 200 + 4) % 16 < 2;
     let plane: Vec<f32> = (0..200 * 160).map(|i| f32::from(!dark(i))).collect();
     let picture = Image::new(200, 160, [plane.clone(), plane.clone(), plane]).unwrap();
-    assert!(restore::restored(&picture).unwrap().is_none());
+    assert!(meant(&picture).unwrap().is_none());
     let fit = default(&picture);
     assert!(fit.scene.len() < 40, "{} marks", fit.scene.len());
     let db = psnr_db(&fit, &picture);

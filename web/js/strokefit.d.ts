@@ -23,6 +23,8 @@ export interface Options {
   progressive?: boolean;
   /** Draw noise, traces of JPEG and other damage of the picture as they are. */
   literal?: boolean;
+  /** What becomes of the paper of a page that was scanned or photographed: it keeps its colour, or becomes white; `own` if it is left out. */
+  paper?: "own" | "white";
   /** Which errors count: those that people see, or all alike, for a tenth of a dB more; if it is left out, `exact` with `psnr`, and `eye` without. */
   look?: "eye" | "exact";
   /** Opaque strokes only. */

@@ -66,6 +66,7 @@ def fit(
     preset: str = "balanced",
     marks: str = "auto",
     literal: bool = False,
+    paper: str = "own",
     look: Optional[str] = None,
     opaque: bool = False,
     coverage: str = "smoothstep",
@@ -108,6 +109,7 @@ def fit(
         marks: What the drawing is made of: `auto` (areas for what is filled, strokes for lines and for the rest), `strokes` or
             `areas`.
         literal: Draw noise, traces of JPEG and other damage of the picture as they are.
+        paper: What becomes of the paper of a page that was scanned or photographed: it keeps its colour (`own`), or becomes `white`.
         look: Which errors count: those that people see (`eye`), or all alike (`exact`), for a tenth of a dB more; `None` is
             `exact` with `psnr`, and `eye` without.
         opaque: Use opaque strokes only.
@@ -170,6 +172,7 @@ def refine(
     preset: str = "balanced",
     marks: str = "auto",
     literal: bool = False,
+    paper: str = "own",
     look: Optional[str] = None,
     opaque: bool = False,
     coverage: str = "smoothstep",

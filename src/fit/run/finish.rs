@@ -39,6 +39,7 @@ pub(in crate::fit) fn finish(mut session: Session<'_>, compared: bool) -> Result
         stacking_db: session.history.stacking_db,
         target: session.target,
         damage: None,
+        meant: None,
         stages,
         dropped: Dropped {
             non_finite: rounded.dropped.non_finite + session.drawing.counters.lost,
