@@ -1,6 +1,7 @@
 //! The budgets of a fit: what they allow, and when they are met.
 
 pub(super) mod memory;
+pub(super) mod paleness;
 pub(super) mod plan;
 pub(super) mod price;
 pub(super) mod reduction;

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::base::Base;
+use super::budget::paleness::paleness;
 use super::config::{Background, Config, Execution};
 use super::drawing::focus::Focus;
 use super::multi_start;
@@ -145,6 +146,7 @@ impl<'a> Fitter<'a> {
         };
         task.doubt = restored.as_ref().map_or(0.0, |r| r.damage.doubt());
         let target = restored.as_ref().map_or(picture, |r| &r.picture);
+        task.paleness_db = paleness(target, task.doubt);
         // 2. Reduce it to the pixels that its drawing needs.
         let reduced = pool.install(|| task.reduce(target));
         let target = reduced.as_ref().unwrap_or(target);

@@ -80,7 +80,7 @@ pub(super) fn draw<'a>(
         level,
         since,
         costs: Costs {
-            price: Price::of(config, task.doubt, pixels),
+            price: task.price(pixels),
             pixels,
         },
         watch,

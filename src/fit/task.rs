@@ -1,6 +1,7 @@
 //! The task of a fit: what it draws, and how.
 
 use super::base::Base;
+use super::budget::price::Price;
 use super::budget::reduction;
 use super::config::Config;
 use super::drawing::background;
@@ -20,6 +21,8 @@ pub(super) struct Task {
     pub(super) page: Option<[u32; 2]>,
     /// Estimated RMS distance of the picture from the restored one, in 8-bit levels.
     pub(super) doubt: f32,
+    /// How much more quality the picture needs for want of contrast, dB.
+    pub(super) paleness_db: f64,
     /// Most marks that areas are split into.
     pub(super) most_marks: usize,
 }
@@ -33,8 +36,14 @@ impl Task {
             focus: None,
             page: None,
             doubt: 0.0,
+            paleness_db: 0.0,
             most_marks: usize::MAX,
         }
+    }
+
+    /// The price of what is drawn of a picture of `pixels` pixels.
+    pub(super) fn price(&self, pixels: usize) -> Price {
+        Price::of(&self.config, self.doubt, self.paleness_db, pixels)
     }
 
     /// This task by another configuration.

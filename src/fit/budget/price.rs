@@ -54,13 +54,12 @@ impl Price {
     }
 
     /// The price of what `config` draws of a picture of `pixels` pixels: that of its quality, or of a fidelity, to be met by few
-    /// strokes of not too many points. Damage takes from the quality, unless the user has set that:
+    /// strokes of not too many points. Damage takes from the quality, and paleness adds to it, unless the user has set that:
     /// the picture is `doubt` levels from what it means.
-    pub(in crate::fit) fn of(config: &Config, doubt: f32, pixels: usize) -> Self {
-        let lost_db = if config.quality.is_none() {
-            10.0 * math::log10(1.0 + f64::from(doubt / DOUBLE))
-        } else {
-            0.0
+    pub(in crate::fit) fn of(config: &Config, doubt: f32, paleness_db: f64, pixels: usize) -> Self {
+        let lost_db = match config.quality {
+            None => 10.0 * math::log10(1.0 + f64::from(doubt / DOUBLE)) - paleness_db,
+            Some(_) => 0.0,
         };
         let wanted_db = config.budget.psnr_db.map(|db| db + BEYOND_DB);
         // Price by the plain form unless bytes are limited: cheaper bytes in the smallest form mustn't buy more marks.

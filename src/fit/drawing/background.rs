@@ -84,7 +84,10 @@ pub(in crate::fit) fn choose(background: Background, target: &Image) -> (Rgb, bo
 }
 
 /// The colour of the paper that is seen along the border of an opaque picture, if there is one.
-fn paper(picture: &Image) -> Option<Rgb> {
+pub(in crate::fit) fn paper(picture: &Image) -> Option<Rgb> {
+    if picture.alpha().is_some() {
+        return None;
+    }
     let levels = picture.to_rgb8();
     let (colors, _) = levels.as_chunks();
     border_color(colors, picture.width())

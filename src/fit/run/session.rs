@@ -103,6 +103,7 @@ impl<'a> Session<'a> {
         let (config, base, page) = (&task.config, task.base.as_ref(), task.page);
         // Limit on strokes, their stages and their widths.
         let pixels = picture.width() * picture.height();
+        let price = task.price(pixels);
         let recipe = budget::recipe(config, base, picture);
         let limit = budget::strokes(config, base, picture);
         let before = Before::of(base);
@@ -120,7 +121,7 @@ impl<'a> Session<'a> {
             ground,
         } = Prepared::new(
             picture,
-            choose_background(picture, config, base, task.doubt),
+            choose_background(picture, config, base, price.per_byte()),
             base,
             coarsest,
         )?;
@@ -160,7 +161,7 @@ impl<'a> Session<'a> {
             target,
             annealing,
             limit: budget::max_strokes(config, limit, base, pixels),
-            price: Price::of(config, task.doubt, pixels),
+            price,
             writer: Writer::of(config, base, page),
             drawing,
             history: History::new(records, budget::planned_stop(&config.budget)),
@@ -467,17 +468,15 @@ fn choose_background(
     picture: &Image,
     config: &Config,
     base: Option<&Base>,
-    doubt: f32,
+    price_per_byte: f32,
 ) -> (Background, Vec<Area>) {
     let may_be = base.is_none()
         && config.background == Background::Auto
         && config.colors == Colors::Free
         && config.pens.is_none()
         && !(config.opaque && picture.alpha().is_some());
-    let pixels = picture.width() * picture.height();
-    let price = Price::of(config, doubt, pixels);
     match may_be {
-        true => background::with_ground(picture, price.per_byte()),
+        true => background::with_ground(picture, price_per_byte),
         false => (config.background, Vec::new()),
     }
 }
