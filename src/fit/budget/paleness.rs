@@ -8,7 +8,7 @@ use crate::math;
 
 /// Contrast of usual drawings, levels: the RMS distance from the paper of what is drawn on it. 63 clip arts have 64 to 200, pencil
 /// sketches 45 to 90. With 100, 120 a pencil sketch of 45 has SSIMULACRA2 48, 57 in 13, 32 kB; without, 3 in 4 kB.
-const USUAL: f64 = 120.0;
+const USUAL: f64 = 100.0;
 /// Largest distance from the paper of what is paper, levels, and how much larger that is for each level of doubt. Guesses.
 const PAPER: f64 = 12.0;
 const PAPER_OF_DOUBT: f64 = 2.0;
