@@ -49,8 +49,8 @@ mod tests {
     fn bar(levels: f32, share: f32) -> Image {
         let value = |_: usize, y: usize, _: usize| match y < 40 || y as f32 >= 40.0 + 100.0 * share
         {
-            true => 0.9,
-            false => 0.9 - levels / 255.0,
+            true => 0.8,
+            false => 0.8 - levels / 255.0,
         };
         Image::from_fn(100, 100, 3, value).unwrap()
     }
