@@ -194,7 +194,10 @@ impl<'a> Job<'a> {
                 "{name}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more"
             ));
         }
-        if is_open && !is_blank(&drawn.judged) && is_lost(verdict.fidelity.ssimulacra2, verdict.fidelity.details_kept) {
+        if is_open
+            && !is_blank(&drawn.judged)
+            && is_lost(verdict.fidelity.ssimulacra2, verdict.fidelity.details_kept)
+        {
             verbosity.say(format_args!(
                 "{name}: much of the picture is lost (SSIMULACRA2 {:.0}): a higher --quality than {} keeps more",
                 verdict.fidelity.ssimulacra2, fit::DEFAULT_QUALITY
