@@ -5,6 +5,7 @@
 //! colors     the colours of flat places
 //! mixtures   all other pixels as mixtures of the two colours beside them
 //! regions    the connected pixels of one colour
+//! worth      which of them are more than what a damage has left
 //! translucent what is seen through, and where two such shapes cross
 //! overlaps   which of two shapes lies on top
 //! stack      larger shapes lie below and go on beneath what lies on top
@@ -27,6 +28,7 @@ mod shades;
 mod span;
 mod stack;
 mod translucent;
+mod worth;
 
 use std::collections::BTreeMap;
 

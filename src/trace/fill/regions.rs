@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use super::super::areas::{LEVEL, Pixel, away, distance2, mix};
 use super::super::parts::{Part, Parts};
-use super::colors::{self, CANVAS, Colors, NONE, SHADES};
+use super::colors::{self, CANVAS, Colors};
 use super::mixtures::{Mixture, best_mixture};
+use super::worth::{self, Worth};
 use crate::math::{Normal, median};
 use crate::scene::Shade;
 
@@ -51,14 +52,15 @@ impl Regions {
         if dissolve(colors, &of, &members, &mut mixtures) {
             (of, members) = by_label(&mixtures);
         }
-        // 2. What the rest of a damage explains is nothing of its own, the smallest first.
-        let largest = members.iter().map(Vec::len).max().unwrap_or_default();
-        let sizes = (0..).map(|k| Rank::Smaller(8 << (2 * k)));
-        let sizes =
-            sizes.take_while(|rank| matches!(rank, Rank::Smaller(least) if *least <= largest));
-        let ranks = [Rank::Shaded].into_iter().chain(sizes);
-        for rank in ranks.filter(|_| doubt > 0.0) {
-            if leave_to_others(colors, (&of, &members), &mut mixtures, (rank, doubt)) {
+        // 2. What the rest of a damage explains is nothing of its own.
+        for rank in worth::ranks(&members).filter(|_| doubt > 0.0) {
+            let worth = Worth {
+                colors,
+                of: &of,
+                members: &members,
+                doubt,
+            };
+            if worth.leave_to_others(rank, &mut mixtures) {
                 (of, members) = by_label(&mixtures);
             }
         }
@@ -263,129 +265,6 @@ fn dissolve(
     }
     is_found
 }
-
-/// Which regions are left to which others.
-#[derive(Debug, Clone, Copy)]
-enum Rank {
-    /// Those of gradients to those of colours.
-    Shaded,
-    /// Those of fewer pixels to those that have as many.
-    Smaller(usize),
-}
-
-/// Makes mixtures of the pixels of regions of lower rank whose own colour explains less than its price: what is left of
-/// a damage of so much `doubt`, in levels, explains their colours as well. Returns whether there were such.
-fn leave_to_others(
-    colors: &Colors<'_>,
-    (of, members): (&[u32], &[Vec<u32>]),
-    mixtures: &mut [Mixture],
-    (rank, doubt): (Rank, f32),
-) -> bool {
-    let (pixels, width) = (colors.pixels, colors.pixels.width);
-    let is_low = |region: u32| {
-        let region = &members[region as usize];
-        match rank {
-            Rank::Shaded => (SHADES..NONE).contains(&mixtures[region[0] as usize].own),
-            Rank::Smaller(least) => region.len() < least,
-        }
-    };
-    // The labels of regions of higher rank beside each one of lower rank.
-    let mut near: Vec<Vec<u16>> = vec![Vec::new(); members.len()];
-    let mut touch = |i: usize, k: usize| {
-        for (a, b) in [(i, k), (k, i)] {
-            let (small, large) = (of[a], of[b]);
-            let label = mixtures[b].own;
-            if is_low(small) && !is_low(large) && !near[small as usize].contains(&label) {
-                near[small as usize].push(label);
-            }
-        }
-    };
-    for i in 0..of.len() {
-        if !(i + 1).is_multiple_of(width) && of[i] != of[i + 1] {
-            touch(i, i + 1);
-        }
-        if i + width < of.len() && of[i] != of[i + width] {
-            touch(i, i + width);
-        }
-    }
-    // What a pixel differs by, beyond what is left of a damage all over a place: that is alike in many pixels, and tells nothing.
-    let slack = doubt * LEVEL;
-    let error2 = |i: usize, drawn: &Pixel| {
-        let target = pixels.target.at(i);
-        let away = target.iter().zip(drawn);
-        let away = away.map(|(a, b)| ((a - b).abs() - slack).max(0.0));
-        away.map(|a| a * a).sum::<f32>()
-    };
-    let error = |i: usize, mixture: &Mixture| {
-        let colors = [mixture.own, mixture.other].map(|label| colors.at(label, i));
-        let drawn = mix(&colors[0], &colors[1], mixture.share);
-        let sigma = REST * doubt * LEVEL;
-        let edge = match mixture.share {
-            0.0 => 0.0,
-            _ => EDGES * EDGES * distance2(&colors[0], &colors[1]),
-        };
-        (error2(i, &drawn), sigma * sigma + edge)
-    };
-    let nearest = |near: &[u16], i: usize| {
-        let pure = near.iter().map(|&label| Mixture::pure(label));
-        let first = |best: Mixture, other: Mixture| match error(i, &other).0 < error(i, &best).0 {
-            true => other,
-            false => best,
-        };
-        pure.reduce(first).unwrap_or(Mixture::pure(CANVAS))
-    };
-    let mixed = |(region, near): (&Vec<u32>, &Vec<u16>)| {
-        if near.is_empty() {
-            return None;
-        }
-        let most = 2.0 * PRICE * NUMBERS;
-        let mut mean = [0.0; 6];
-        for &i in region {
-            let target = pixels.target.at(i as usize);
-            mean.iter_mut()
-                .zip(target)
-                .for_each(|(sum, v)| *sum += v / region.len() as f32);
-        }
-        let mut gain = 0.0;
-        let mut found = Vec::with_capacity(region.len());
-        for &i in region {
-            let i = i as usize;
-            // An edge is two pixels wide.
-            let is_edge = pixels.around(i, 2).any(|k| of[k] != of[i]);
-            let mixture = match is_edge {
-                true => best_mixture(colors, near, i),
-                false => nearest(near, i),
-            };
-            let (of_others, variance) = error(i, &mixture);
-            let own = error(i, &mixtures[i]).0.min(error2(i, &mean));
-            gain += (of_others - own) / variance;
-            if gain >= most {
-                return None;
-            }
-            found.push((i, mixture));
-        }
-        Some(found)
-    };
-    let found: Vec<(usize, Mixture)> = members
-        .iter()
-        .zip(&near)
-        .filter_map(mixed)
-        .flatten()
-        .collect();
-    for &(i, mixture) in &found {
-        mixtures[i] = mixture;
-    }
-    !found.is_empty()
-}
-
-/// Numbers of a thing: a circle and its colour.
-const NUMBERS: f32 = 6.0;
-/// Price of a number, nats, as that of outlines.
-const PRICE: f32 = 5.0;
-/// Deviation of a channel where a damage was, in units of the doubt.
-const REST: f32 = 1.0;
-/// Deviation of the pixels of an edge, in units of the contrast of its sides.
-const EDGES: f32 = 0.02;
 
 /// Root of the squared error below which a mixture explains a pixel of a thin region. A guess.
 const EDGE: f32 = 8.0 * LEVEL;
