@@ -194,17 +194,13 @@ impl<'a> Job<'a> {
                 "{name}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more"
             ));
         }
-        if is_open
-            && !is_blank(&drawn.judged)
-            && is_lost(verdict.fidelity.ssimulacra2, verdict.fidelity.details_kept)
-        {
+        if is_open && is_lost(&drawn.judged) {
             verbosity.say(format_args!(
                 "{name}: much of the picture is lost (SSIMULACRA2 {:.0}): a higher --quality than {} keeps more",
                 verdict.fidelity.ssimulacra2, fit::DEFAULT_QUALITY
             ));
         }
-        let is_white = fit.damage.is_some_and(|damage| damage.uneven_light);
-        if config.paper == Paper::White && !is_white {
+        if config.paper == Paper::White && !is_relit(fit) {
             complain(format_args!(
                 "{name}: nothing became white: no paper was found that is not white already, and with --literal or --psnr none is looked for"
             ));
@@ -266,9 +262,16 @@ impl<'a> Job<'a> {
 /// sketches that cannot be recognised 3 to 10.
 const LOST: (f64, f64) = (20.0, 0.4);
 
-/// True if a drawing has little of its picture.
-fn is_lost(ssimulacra2: f64, details_kept: Option<f64>) -> bool {
-    ssimulacra2 < LOST.0 || details_kept.is_some_and(|kept| kept < LOST.1)
+/// True if a drawing has little of its picture, but something.
+fn is_lost(judged: &Judged) -> bool {
+    let fidelity = &judged.verdict.fidelity;
+    let has_few_details = fidelity.details_kept.is_some_and(|kept| kept < LOST.1);
+    !is_blank(judged) && (fidelity.ssimulacra2 < LOST.0 || has_few_details)
+}
+
+/// True if the light on a page, or the colour of its paper, is not that of the picture.
+fn is_relit(fit: &Fit) -> bool {
+    fit.damage.is_some_and(|damage| damage.uneven_light)
 }
 
 /// A drawing of as many strokes as are allowed, and yet less faithful than this, dB, is one of noise.
@@ -319,8 +322,7 @@ fn tell_poor(judged: &Judged, name: &str) {
     let reached = judged.verdict.fidelity.psnr_db;
     let flat = one_color_db(&judged.fit.target);
     // A page without its shadows is unlike the photograph.
-    let is_lit = judged.fit.damage.is_some_and(|damage| damage.uneven_light);
-    if !is_lit && reached + POOR_DB < flat {
+    if !is_relit(&judged.fit) && reached + POOR_DB < flat {
         complain(format_args!(
             "{name}: warning: a page of one colour would be more like the picture ({flat:.1} dB) than this drawing ({reached:.1} dB): \
              give other colours or more of them, or another --background"

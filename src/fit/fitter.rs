@@ -14,7 +14,7 @@ use super::task::Task;
 use crate::clock::Instant;
 use crate::error::Result;
 use crate::image::Image;
-use crate::restore::{self, Paper};
+use crate::restore;
 
 /// Draws pictures with strokes.
 ///
@@ -135,18 +135,23 @@ impl<'a> Fitter<'a> {
         let pool = self.execution.pool()?;
         // 1. Restore the picture if it is damaged and damage is not to be drawn. A given fidelity covers everything in the picture.
         let is_literal = task.config.literal || task.config.budget.psnr_db.is_some();
-        // Paper that is not drawn is as good as white.
-        let paper = match task.config.background {
-            Background::None => Paper::White,
-            _ => task.config.paper,
-        };
         let restored = match is_literal {
             true => None,
-            false => pool.install(|| restore::restored(picture, paper))?,
+            false => pool.install(|| restore::restored(picture, task.config.paper))?,
+        };
+        // Paper of a sheet that is not drawn is as good as white.
+        let is_sheet = restored.as_ref().is_some_and(|r| r.damage.uneven_light);
+        let restored = match task.config.background {
+            Background::None if is_sheet => {
+                pool.install(|| restore::whitened(picture, restored))?
+            }
+            _ => restored,
         };
         task.doubt = restored.as_ref().map_or(0.0, |r| r.damage.doubt());
         let target = restored.as_ref().map_or(picture, |r| &r.picture);
-        task.paleness_db = paleness(target, task.doubt);
+        if task.config.is_open() {
+            task.paleness_db = paleness(target, task.doubt);
+        }
         // 2. Reduce it to the pixels that its drawing needs.
         let reduced = pool.install(|| task.reduce(target));
         let target = reduced.as_ref().unwrap_or(target);

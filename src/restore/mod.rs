@@ -136,9 +136,14 @@ impl fmt::Display for Damage {
 /// None in practice: a restored picture has the size of the given one and finite values.
 pub fn restored(picture: &Image, paper: Paper) -> Result<Option<Restored>> {
     let restored = undamaged(picture)?;
-    if paper == Paper::Own {
-        return Ok(restored);
+    match paper {
+        Paper::Own => Ok(restored),
+        Paper::White => whitened(picture, restored),
     }
+}
+
+/// What was restored of a picture with white paper, if it is a page.
+pub(crate) fn whitened(picture: &Image, restored: Option<Restored>) -> Result<Option<Restored>> {
     let mut planes = Planes::of(restored.as_ref().map_or(picture, |r| &r.picture));
     if planes.alpha.is_some() || !light::whitened(&mut planes) {
         return Ok(restored);

@@ -144,7 +144,7 @@ fn sites(planes: &Planes) -> Vec<Site> {
     let step = (width * height).div_ceil(MOST_SITES).isqrt().max(1);
     let rows: Vec<usize> = (REACH..height - REACH).step_by(step).collect();
     let grid = grid::offset(planes);
-    let means = means(planes);
+    let means = means(planes, step);
     let of_row = |&y: &usize| {
         let columns = (REACH..width - REACH).step_by(step);
         let opaque = columns.filter(|x| is_opaque(planes, [*x, y], HALF));
@@ -165,14 +165,22 @@ fn is_opaque(planes: &Planes, [x, y]: [usize; 2], reach: usize) -> bool {
             .all(|i| planes.is_opaque(i))
 }
 
-/// The mean of the window around each pixel; 0 where that would leave the picture.
-fn means(planes: &Planes) -> Vec<f32> {
+/// The mean of the window around each pixel that sites look at, of which one in `step` rows and columns is there; 0 elsewhere.
+fn means(planes: &Planes, step: usize) -> Vec<f32> {
+    // Sites look at the windows on both sides, too.
+    let side = REACH - HALF;
+    let is_seen = |at: &usize| {
+        let before =
+            |away: &usize| (at + away + 2 * side * step - REACH - side).is_multiple_of(step);
+        [0, side, 2 * side].iter().any(before)
+    };
     let (luma, width) = (&planes.planes[0], planes.width);
     let mut means = vec![0.0; luma.len()];
     let rows = means.par_chunks_exact_mut(width).enumerate();
-    let inner = rows.filter(|(y, _)| (HALF..planes.height - HALF).contains(y));
+    let inner = rows.filter(|(y, _)| (HALF..planes.height - HALF).contains(y) && is_seen(y));
     inner.for_each(|(y, row)| {
-        for (x, mean) in row.iter_mut().enumerate().take(width - HALF).skip(HALF) {
+        let columns = row.iter_mut().enumerate().take(width - HALF).skip(HALF);
+        for (x, mean) in columns.filter(|(x, _)| is_seen(x)) {
             let rows = (y - HALF..=y + HALF).flat_map(|y| &luma[y * width..][x - HALF..=x + HALF]);
             *mean = rows.sum::<f32>() / (2 * HALF + 1).pow(2) as f32;
         }

@@ -322,6 +322,26 @@ fn what_is_lighter_than_its_page_stays_lighter() {
 }
 
 #[test]
+fn ink_on_a_grey_page_keeps_its_colour_without_the_page() {
+    let ink = [20.0 / 255.0, 40.0 / 255.0, 120.0 / 255.0];
+    let clean = Image::from_fn(120, 100, 3, |x, y, c| {
+        let away = (x as f32 - 59.5).hypot(y as f32 - 49.5);
+        0.5 + (30.0 - away).clamp(0.0, 1.0) * (ink[c] - 0.5)
+    });
+    let config = Config {
+        background: Background::None,
+        ..Config::default()
+    };
+    let fit = drawn(&clean.unwrap(), &config);
+    let is_ink = |color: [f32; 3]| color.iter().zip(ink).all(|(a, b)| (a - b).abs() < 0.02);
+    assert!(
+        fit.scene.marks().any(|mark| is_ink(mark.color())),
+        "{}",
+        fit.svg()
+    );
+}
+
+#[test]
 fn what_is_darker_than_its_page_is_no_shadow() {
     // A large pale thing in the middle of a white page, with noise that is cut off at white.
     let clean = Image::from_fn(160, 160, 3, |x, y, _| {

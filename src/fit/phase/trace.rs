@@ -108,8 +108,8 @@ pub(super) fn tracing(session: &Session<'_>) -> Tracing {
     }
 }
 
-/// Mean squared error of areas that need no descent: 36 dB. A guess.
-const FAITHFUL: f64 = 2.5e-4;
+/// Fidelity of areas that need no descent, dB. A guess.
+const FAITHFUL_DB: f64 = 36.0;
 
 /// True unless the drawing with marks that were traced where they are seen is less like the picture than descents make it.
 fn is_faithful(session: &mut Session<'_>, traced: &[Traced]) -> bool {
@@ -121,7 +121,7 @@ fn is_faithful(session: &mut Session<'_>, traced: &[Traced]) -> bool {
     let marks: Vec<Mark> = traced.iter().map(|traced| traced.mark.clone()).collect();
     let stage = session.drawing.last_stage();
     session.drawing.extend_by(&marks, stage);
-    let is_faithful = session.drawing.mse() <= FAITHFUL;
+    let is_faithful = psnr_db(session.drawing.mse()) >= FAITHFUL_DB;
     session.drawing.revert(before);
     is_faithful
 }

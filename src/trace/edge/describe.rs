@@ -44,7 +44,7 @@ pub(super) struct Contour<'a> {
 }
 
 /// Price of a number, nats.
-pub(super) const PRICE: f64 = 5.0;
+pub(in crate::trace) const PRICE: f64 = 5.0;
 /// Numbers of a line, an arc and a cubic besides the joint before it, of which a smooth one has one less.
 const NUMBERS: [f64; 3] = [2.0, 3.0, 6.0];
 /// A joint leaves the sample beside it out, which would be free otherwise, nats.

@@ -27,13 +27,14 @@ mod segment;
 mod shapes;
 
 pub(in crate::trace) use curve::Ring;
+pub(in crate::trace) use describe::PRICE;
 pub(in crate::trace) use line::Line;
 pub(in crate::trace) use lines::Middle;
 
 use super::contour::{self, Field, Place};
 use crate::math::{self, Point};
 use coverage::{Band, Coverage, Page};
-use describe::{Contour, PRICE};
+use describe::Contour;
 use refine::Target;
 
 /// The rings around what a field covers. `doubts` are the standard deviations of its shares, infinite where they are unknown, and

@@ -116,22 +116,24 @@ impl Regions {
     /// The number of pairs of pixels in which regions touch, for each region its neighbours.
     pub(super) fn neighbours(&self) -> Vec<BTreeMap<u32, u32>> {
         let mut found: Vec<BTreeMap<u32, u32>> = vec![BTreeMap::new(); self.list.len()];
-        let mut touch = |a: u32, b: u32| {
-            if a != b {
-                *found[a as usize].entry(b).or_default() += 1;
-                *found[b as usize].entry(a).or_default() += 1;
-            }
-        };
-        for (i, &region) in self.of.iter().enumerate() {
-            if !(i + 1).is_multiple_of(self.width) {
-                touch(region, self.of[i + 1]);
-            }
-            if let Some(&below) = self.of.get(i + self.width) {
-                touch(region, below);
-            }
+        for [i, k] in borders(&self.of, self.width) {
+            let (a, b) = (self.of[i], self.of[k]);
+            *found[a as usize].entry(b).or_default() += 1;
+            *found[b as usize].entry(a).or_default() += 1;
         }
         found
     }
+}
+
+/// The pairs of pixels, beside or below each other, that are of different regions.
+pub(super) fn borders(of: &[u32], width: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
+    (0..of.len()).flat_map(move |i| {
+        let is_last = (i + 1).is_multiple_of(width);
+        let next = [Some(i + 1).filter(|_| !is_last), Some(i + width)];
+        let next = next.into_iter().flatten();
+        let others = next.filter(move |&k| of.get(k).is_some_and(|other| *other != of[i]));
+        others.map(move |k| [i, k])
+    })
 }
 
 /// The part of each pixel of the regions `of`. Edges belong to what is beside them.
