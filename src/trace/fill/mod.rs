@@ -4,6 +4,7 @@
 //! shades     the gradients of smooth places
 //! colors     the colours of flat places
 //! mixtures   all other pixels as mixtures of the two colours beside them
+//! connected  the pixels of one label that touch, and where such regions touch each other
 //! regions    the connected pixels of one colour
 //! worth      which of them are more than what a damage has left
 //! translucent what is seen through, and where two such shapes cross
@@ -17,6 +18,7 @@
 
 mod colors;
 mod compound;
+mod connected;
 mod corners;
 mod hull;
 mod mixtures;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::super::areas::{LEVEL, Pixel, away, distance2, mix};
 use super::super::parts::{Part, Parts};
 use super::colors::{self, CANVAS, Colors};
+use super::connected::{borders, connected};
 use super::mixtures::{Mixture, best_mixture};
 use super::worth::{self, Worth};
 use crate::math::{Normal, median};
@@ -125,17 +126,6 @@ impl Regions {
     }
 }
 
-/// The pairs of pixels, beside or below each other, that are of different regions.
-pub(super) fn borders(of: &[u32], width: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
-    (0..of.len()).flat_map(move |i| {
-        let is_last = (i + 1).is_multiple_of(width);
-        let next = [Some(i + 1).filter(|_| !is_last), Some(i + width)];
-        let next = next.into_iter().flatten();
-        let others = next.filter(move |&k| of.get(k).is_some_and(|other| *other != of[i]));
-        others.map(move |k| [i, k])
-    })
-}
-
 /// The part of each pixel of the regions `of`. Edges belong to what is beside them.
 fn parts_of(
     of: &[u32],
@@ -167,60 +157,6 @@ fn parts_of(
         (_, Some(lines)) => lines,
     };
     (0..of.len()).map(own).collect()
-}
-
-/// The region of each pixel, and the pixels of each region, row by row, 4-connected: two passes, after Rosenfeld and Pfaltz,
-/// "Sequential operations in digital picture processing".
-fn connected<K: PartialEq>(
-    count: usize,
-    width: usize,
-    key: impl Fn(usize) -> K,
-) -> (Vec<u32>, Vec<Vec<u32>>) {
-    // An earlier pixel of the same region, for each pixel but the first one.
-    let mut earlier: Vec<u32> = Vec::with_capacity(count);
-    for i in 0..count {
-        let own = key(i);
-        let is_alike = |k: &usize| key(*k) == own;
-        let left = i.checked_sub(1).filter(|_| !i.is_multiple_of(width));
-        let left = left.filter(is_alike).map(|k| earlier[k]);
-        let above = i.checked_sub(width).filter(is_alike).map(|k| earlier[k]);
-        let first = match (left, above) {
-            (Some(left), Some(above)) if left != above => join(&mut earlier, left, above),
-            (Some(first), _) | (None, Some(first)) => first,
-            (None, None) => i as u32,
-        };
-        earlier.push(first);
-    }
-    let mut of = earlier;
-    let mut members: Vec<Vec<u32>> = Vec::new();
-    for i in 0..of.len() {
-        // What is earlier has its region by now.
-        let region = match of[i] as usize {
-            first if first == i => members.len() as u32,
-            before => of[before],
-        };
-        of[i] = region;
-        if region as usize == members.len() {
-            members.push(Vec::new());
-        }
-        members[region as usize].push(i as u32);
-    }
-    (of, members)
-}
-
-/// Joins the regions of two pixels, and returns the first pixel of both.
-fn join(earlier: &mut [u32], a: u32, b: u32) -> u32 {
-    let [a, b] = [a, b].map(|pixel| {
-        let mut first = pixel as usize;
-        while earlier[first] as usize != first {
-            // Half of the way will do next time.
-            earlier[first] = earlier[earlier[first] as usize];
-            first = earlier[first] as usize;
-        }
-        first as u32
-    });
-    earlier[a.max(b) as usize] = a.min(b);
-    a.min(b)
 }
 
 /// Makes mixtures of thin regions whose pixels lie between the colours on either side. Returns whether there were such.
@@ -454,24 +390,6 @@ mod tests {
     use super::super::shades::Shaded;
     use super::*;
 
-    /// The regions of a picture in letters, each as a letter of its own.
-    fn regions(rows: &[&str]) -> Vec<String> {
-        let labels = rows.concat();
-        let mixtures = labels.bytes().map(|b| Mixture::pure(u16::from(b)));
-        let mixtures: Vec<Mixture> = mixtures.collect();
-        let (of, members) = connected(mixtures.len(), rows[0].len(), |i| mixtures[i].own);
-        for (region, pixels) in members.iter().enumerate() {
-            assert!(pixels.is_sorted() && pixels.iter().all(|&i| of[i as usize] == region as u32));
-        }
-        let letters: String = of
-            .iter()
-            .map(|&region| char::from(b'a' + region as u8))
-            .collect();
-        let rows = letters.as_bytes().chunks(rows[0].len());
-        rows.map(|row| String::from_utf8_lossy(row).into_owned())
-            .collect()
-    }
-
     /// A page of two greys side by side, with a speck of so many levels less on the lighter one.
     fn speck(levels: f32) -> Pixels<'static> {
         let value = |i: usize| match (i % 40, i / 40) {
@@ -506,17 +424,5 @@ mod tests {
         assert_eq!(regions_of_speck(16.0, 2.0), 3);
         assert_eq!(regions_of_speck(16.0, 8.0), 2);
         assert_eq!(regions_of_speck(60.0, 8.0), 3);
-    }
-
-    #[test]
-    fn what_meets_below_is_one_region() {
-        let comb = ["x.x.x.x", "x.x.xxx", "x.xxx..", "xxx..xx"];
-        assert_eq!(regions(&comb), ["abacada", "abacaaa", "abaaaee", "aaaffgg"]);
-    }
-
-    #[test]
-    fn corners_do_not_connect_and_rows_do_not_run_on() {
-        assert_eq!(regions(&["x.", ".x"]), ["ab", "cd"]);
-        assert_eq!(regions(&["..x", "x.."]), ["aab", "caa"]);
     }
 }

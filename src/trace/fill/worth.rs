@@ -6,8 +6,8 @@
 use super::super::areas::{LEVEL, Pixel, distance2, mix};
 use super::super::edge::PRICE;
 use super::colors::{CANVAS, Colors, NONE, SHADES};
+use super::connected::borders;
 use super::mixtures::{Mixture, best_mixture};
-use super::regions::borders;
 
 /// Numbers of a thing: those of a circle, and its colour.
 const NUMBERS: f32 = 6.0;
