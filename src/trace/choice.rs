@@ -70,13 +70,13 @@ impl<'a> Choice<'a> {
 
     /// True if there is a shape that no stroke has a part of.
     pub(super) fn has_areas(&self) -> bool {
-        let mut shapes = self.flat.shapes();
-        let is_grouped = |region: &u32| {
-            self.groups
-                .iter()
-                .any(|group| group.regions.contains(region))
-        };
-        shapes.any(|region| !is_grouped(&region))
+        self.flat.shapes().any(|region| !self.is_grouped(region))
+    }
+
+    /// True if strokes have a part of a region.
+    fn is_grouped(&self, region: u32) -> bool {
+        let mut groups = self.groups.iter();
+        groups.any(|group| group.regions.contains(&region))
     }
 
     /// The marks that draw the picture, in painting order, to be fitted; or lines that came apart from blobs although strokes do not
@@ -123,7 +123,9 @@ impl<'a> Choice<'a> {
             return None;
         }
         let placing = self.flat.placing()?;
-        let fills = placing.fills();
+        // Where there is no damage, edges that colours do not tell are those of something else, such as gradients.
+        let is_clean = self.flat.tracing.doubt == 0.0;
+        let fills = placing.fills(|region| is_clean && !self.is_grouped(region))?;
         let lines = |group: &Group| self.lines(group, &placing, &fills);
         let mut lines: Vec<Option<Vec<Stroke>>> = self.groups.par_iter().map(lines).collect();
         self.keep_pens(&mut lines, &fills);
@@ -133,8 +135,7 @@ impl<'a> Choice<'a> {
         let is_told = |(votes, stroke): (&Votes, &Option<_>)| !votes.is_empty() || stroke.is_none();
         let is_sure = self.votes.iter().zip(&chosen.strokes).all(is_told)
             && placing.is_sure(&fills, &chosen.is_stroked);
-        // Where there is no damage, edges that colours do not tell are those of something else, such as gradients.
-        if !is_sure && self.flat.tracing.doubt == 0.0 {
+        if !is_sure && is_clean {
             return None;
         }
         let count = chosen.strokes.iter().flatten().count();

@@ -37,6 +37,17 @@ pub(in crate::trace) struct Middle {
     pub(in crate::trace) radius: f64,
 }
 
+impl Middle {
+    /// True if a place is within a distance.
+    fn is_within(&self, distance: f64, p: Point) -> bool {
+        let mut pieces = self.places.windows(2);
+        pieces.any(|ends| {
+            let piece = kurbo::Line::new(ends[0], ends[1]);
+            kurbo::ParamCurveNearest::nearest(&piece, p, 0.0).distance_sq < distance * distance
+        })
+    }
+}
+
 /// Lines along some middles that cover what `shares` tell, and the length of the description of the page by them; `None` if that will not
 /// become shorter than `most`.
 pub(super) fn lines(
@@ -46,9 +57,20 @@ pub(super) fn lines(
     most: f64,
 ) -> Option<(Vec<Line>, f64)> {
     // 1. Each by itself.
+    let profiles: Vec<Vec<Profile>> = middles
+        .iter()
+        .map(|middle| profiles(field, shares, middle))
+        .collect();
+    let beyond: f64 = (0..middles.len())
+        .map(|i| beyond(middles, i, &profiles[i]))
+        .sum();
+    if beyond > LOST * most + WIDE {
+        return None;
+    }
     let described = middles
         .iter()
-        .map(|middle| described(field, shares, middle));
+        .zip(&profiles)
+        .map(|(middle, profiles)| described(middle, profiles));
     let described: Vec<Vec<Line>> = described.collect();
     if described.iter().any(Vec::is_empty) {
         return None;
@@ -82,6 +104,8 @@ pub(super) fn lines(
 const HOPELESS: [f64; 2] = [20.0, 1000.0];
 /// As [`HOPELESS`], times as long before lines are joined. The most is 2.
 const LOST: f64 = 3.0;
+/// What has widths that no line has by as many nats, and more than [`LOST`], is none. Of lines in 63 clip arts, the most is 400.
+const WIDE: f64 = 600.0;
 
 /// Refines lines as they are.
 pub(super) fn settle(shares: &Shares<'_>, lines: &mut [Line]) {
@@ -378,8 +402,8 @@ fn with_other_ends(line: &Line) -> Line {
 }
 
 /// The lines along one middle: the cheapest description, and shapes near it.
-fn described(field: &Field, shares: &Shares<'_>, middle: &Middle) -> Vec<Line> {
-    let (samples, radius) = samples(field, shares, middle);
+fn described(middle: &Middle, profiles: &[Profile]) -> Vec<Line> {
+    let (samples, radius) = samples(middle, profiles);
     let shapes = match middle.is_closed {
         true => shapes::near(&samples, true),
         false => Vec::new(),
@@ -417,25 +441,58 @@ fn described(field: &Field, shares: &Shares<'_>, middle: &Middle) -> Vec<Line> {
         .collect()
 }
 
-/// Samples along a middle about a px apart, by profiles across it, and half the width that they tell.
-fn samples(field: &Field, shares: &Shares<'_>, middle: &Middle) -> (Vec<Sample>, f64) {
+/// Profiles across a middle, a px apart.
+fn profiles(field: &Field, shares: &Shares<'_>, middle: &Middle) -> Vec<Profile> {
     let mut profiles: Vec<Profile> = Vec::new();
     let mut left = 0.5;
     for ends in middle.places.windows(2) {
         let way = ends[1] - ends[0];
         let length = way.hypot();
         while left < length {
-            let at = ends[0] + left / length * way;
             profiles.push(Profile::across(
                 field,
                 shares,
-                (at, way / length),
+                (ends[0] + left / length * way, way / length),
                 middle.radius,
             ));
             left += 1.0;
         }
         left -= length;
     }
+    profiles
+}
+
+/// The width of a line that these profiles tell.
+fn width_of(middle: &Middle, profiles: &[Profile]) -> f64 {
+    let width = median(profiles.iter().filter_map(|p| Some(p.width()? as f32))).map(f64::from);
+    width.unwrap_or(2.0 * middle.radius)
+}
+
+/// A length that any description by lines of one width has beyond its numbers: what profiles across middle `i` of some are wider or
+/// narrower than their median is wrong.
+fn beyond(middles: &[Middle], i: usize, profiles: &[Profile]) -> f64 {
+    let middle = &middles[i];
+    let width = width_of(middle, profiles);
+    // At corners, and where lines cross, what is seen is wider than any of them.
+    let corners = corners(middle);
+    let is_crossed = |p: Point| {
+        let near = 2.0 * middle.radius + 2.0;
+        let mut others = middles.iter().enumerate().filter(|(k, _)| *k != i);
+        corners.iter().any(|corner| (*corner - p).hypot() < near)
+            || others.any(|(_, other)| other.is_within(near + other.radius, p))
+    };
+    let off = profiles.iter().map(|profile| match profile.width() {
+        Some(own) => (own - width).abs(),
+        None => (profile.least - width).max(0.0),
+    });
+    // An edge may be a pixel off for nothing.
+    let off = off.map(|off| (off - 1.0).max(0.0)).zip(profiles);
+    let off = off.filter(|(off, profile)| *off > 0.0 && !is_crossed(profile.at));
+    0.5 * describe::CAP * off.map(|(off, _)| off).sum::<f64>()
+}
+
+/// Samples along a middle by profiles across it, and half the width that they tell.
+fn samples(middle: &Middle, profiles: &[Profile]) -> (Vec<Sample>, f64) {
     // At a corner profiles tell the middle of both of its sides.
     let corners = corners(middle);
     let is_cut = |p: Point| {
@@ -443,8 +500,7 @@ fn samples(field: &Field, shares: &Shares<'_>, middle: &Middle) -> (Vec<Sample>,
             .iter()
             .position(|corner| (*corner - p).hypot() < 1.2 * middle.radius)
     };
-    let width = median(profiles.iter().filter_map(|p| Some(p.width()? as f32))).map(f64::from);
-    let width = width.unwrap_or(2.0 * middle.radius);
+    let width = width_of(middle, profiles);
     let found = profiles.iter().filter_map(|profile| profile.sample(width));
     let mut samples: Vec<Sample> = Vec::new();
     let mut last = None;
@@ -520,6 +576,8 @@ struct Profile {
     normal: Vec2,
     /// How far it goes from there against the normal and along it, px; `None` if that is not known.
     sides: [Option<f64>; 2],
+    /// What it covers at least, px.
+    least: f64,
     doubt: f64,
 }
 
@@ -534,15 +592,21 @@ impl Profile {
         let reach = ((2.0 * radius + 3.0) / STEP).ceil() as i32;
         let share = |k: i32| f64::from(field.at(math::xy(place(k))));
         let side = |step: i32| {
-            let end = (1..=reach).find(|&k| share(k * step) < flat)?;
-            let is_known = (0..=end).all(|k| shares.is_known(pixel(place(k * step))));
-            let covered = 0.5 * share(0) + (1..=end).map(|k| share(k * step)).sum::<f64>();
-            is_known.then_some(covered * STEP)
+            let end = (1..=reach).find(|&k| share(k * step) < flat);
+            let within = || 0..=end.unwrap_or(reach);
+            let is_known = |k: &i32| shares.is_known(pixel(place(k * step)));
+            let half = |k: i32| if k == 0 { 0.5 } else { 1.0 };
+            let known = within().filter(is_known);
+            let covered = STEP * known.map(|k| half(k) * share(k * step)).sum::<f64>();
+            let is_whole = end.is_some() && within().all(|k| is_known(&k));
+            (covered, is_whole.then_some(covered))
         };
+        let sides = [side(-1), side(1)];
         Self {
             at,
             normal,
-            sides: [side(-1), side(1)],
+            sides: sides.map(|(_, whole)| whole),
+            least: sides[0].0 + sides[1].0,
             doubt,
         }
     }

@@ -39,12 +39,17 @@ use refine::Target;
 
 /// The rings around what a field covers. `doubts` are the standard deviations of its shares, infinite where they are unknown, and
 /// `hidden` is the share of a place where an outline would not be seen. And the deviation of the shares from what is described, in the middle of
-/// edges.
+/// edges; `None` if it is `most` or more.
 pub(super) fn rings(
     field: &Field,
     doubts: &[f64],
     hidden: impl Fn(Point) -> f32,
-) -> (Vec<Ring>, f64) {
+    most: f64,
+) -> Option<(Vec<Ring>, f64)> {
+    let doubt = doubt_of_edges(field, doubts);
+    if doubt >= most {
+        return None;
+    }
     let is_hidden = |p: Point| hidden(p) > COVERED;
     let page = field.page();
     let mut shares = Shares {
@@ -117,6 +122,10 @@ pub(super) fn rings(
     }
     // 3. What edges are off by beyond what pixels tell is the error of the model: mixtures of three colours, blurs, blocks.
     shares.factor = factor(misfits);
+    let deviation = shares.factor * doubt;
+    if deviation >= most {
+        return None;
+    }
     // 4. More numbers or fewer, and the shape once more.
     for (ring, shape) in &mut described {
         shares.alone(ring, is_single, |shares, ring| {
@@ -139,8 +148,7 @@ pub(super) fn rings(
             rings.push(ring);
         }
     }
-    let deviation = shares.factor * doubt_of_edges(field, doubts);
-    (rings, deviation)
+    Some((rings, deviation))
 }
 
 /// Deviations of the edges in units of what the pixels tell, by the errors of pixels in these units; 1 at least.

@@ -41,10 +41,18 @@ impl<'a> Placing<'a> {
         }
     }
 
-    /// The shapes of the stack, from back to front.
-    pub(in crate::trace) fn fills(&self) -> Vec<Fill<Ring>> {
+    /// The shapes of the stack, from back to front; `None` if colours do not tell where the edges of one are that has to be sure.
+    pub(in crate::trace) fn fills(
+        &self,
+        has_to_be_sure: impl Fn(u32) -> bool + Sync,
+    ) -> Option<Vec<Fill<Ring>>> {
         let layers = self.flat.stack.layers.par_iter();
-        layers.filter_map(|layer| self.fill(layer)).collect()
+        let fills = layers.map(|layer| match has_to_be_sure(layer.region) {
+            true => self.fill(layer, SURE),
+            false => self.fill(layer, f64::INFINITY),
+        });
+        let fills = fills.collect::<Option<Vec<Option<Fill<Ring>>>>>()?;
+        Some(fills.into_iter().flatten().collect())
     }
 
     /// The areas of shapes, those of one colour joined, from back to front, beside so many strokes. Those of `left_out` regions are
@@ -76,8 +84,8 @@ impl<'a> Placing<'a> {
             .all(|deviation| deviation < SURE)
     }
 
-    /// The shape of a layer by its edges.
-    fn fill(&self, layer: &Layer) -> Option<Fill<Ring>> {
+    /// The shape of a layer by its edges, if there is one; `None` if these deviate by `most` or more.
+    fn fill(&self, layer: &Layer, most: f64) -> Option<Option<Fill<Ring>>> {
         let flat = self.flat;
         let (width, height) = (flat.regions.width, flat.regions.height);
         let (mut field, mut hides) = flat.seen_of(layer);
@@ -90,9 +98,9 @@ impl<'a> Placing<'a> {
             true => 0.0,
             false => flat.share_at(math::xy(p), &hides),
         };
-        let (rings, deviation) = edge::rings(&field, &doubts, hidden);
-        let fill = flat.filled(layer, rings, &self.gains)?;
-        Some(Fill { deviation, ..fill })
+        let (rings, deviation) = edge::rings(&field, &doubts, hidden, most)?;
+        let fill = flat.filled(layer, rings, &self.gains);
+        Some(fill.map(|fill| Fill { deviation, ..fill }))
     }
 
     /// Lines along middles that draw what some shapes show; `None` where colours do not tell where they are, or if the shapes have a
