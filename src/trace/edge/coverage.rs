@@ -81,8 +81,12 @@ impl Band {
         // 1. Pieces of rows near places about a px apart.
         let owns = ring.owns();
         let mut pieces: Vec<[i32; 3]> = Vec::new();
+        let mut last = None;
         let mut add = |p: Point| {
             let [x, y] = [p.x.floor() as i32, p.y.floor() as i32];
+            if last.replace([x, y]) == Some([x, y]) {
+                return;
+            }
             pieces.extend((y - MARGIN..=y + MARGIN).map(|y| [y, x - MARGIN, x + MARGIN + 1]));
         };
         let own = segments.iter().map(|&i| ring.polyline_of(i, &owns));
@@ -133,7 +137,10 @@ impl Band {
             (*first, *end) = ((*first).max(left), (*end).min(right));
             *y >= top && *y < bottom && first < end
         });
-        pieces.sort_unstable();
+        // Rows and columns of a page are not negative, so that they sort as one number.
+        pieces.sort_unstable_by_key(|[y, first, _]| {
+            (((y - top) as u64) << 32) | (first - left) as u64
+        });
         let mut band = Self {
             page,
             top: pieces.first().map_or(0, |piece| piece[0]),

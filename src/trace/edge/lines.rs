@@ -170,7 +170,7 @@ fn target(shares: &Shares<'_>, lines: &[Line], i: usize) -> Target {
                 target.shares[k] -= 0.5 * share;
                 target.slacks[k] += 0.5 * share;
                 if share > COVERED {
-                    target.sigmas[k] = f64::INFINITY;
+                    target.weights[k] = 0.0;
                 }
             }
         }

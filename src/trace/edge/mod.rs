@@ -255,9 +255,9 @@ impl Shares<'_> {
         let indices: Vec<usize> = band.places().map(|at| self.page.index(at)).collect();
         Target {
             shares: indices.iter().map(|&i| self.values[i]).collect(),
-            sigmas: indices
+            weights: indices
                 .iter()
-                .map(|&i| self.factor * self.doubts[i])
+                .map(|&i| 1.0 / (self.factor * self.doubts[i]))
                 .collect(),
             slacks: vec![self.slack; indices.len()],
             band,
@@ -414,7 +414,7 @@ impl Shares<'_> {
         let coverage = Coverage::of(ring, &target.band);
         let covered = coverage.shares();
         let touched = coverage.touched().into_iter();
-        let known = touched.filter(|&pixel| target.sigmas[pixel].is_finite());
+        let known = touched.filter(|&pixel| target.weights[pixel] > 0.0);
         let misfits = known.map(|pixel| target.error(pixel, covered[pixel]).abs());
         misfits.collect()
     }
@@ -468,7 +468,7 @@ mod tests {
             .collect();
         let target = Target {
             band: band.clone(),
-            sigmas: vec![0.01; shares.len()],
+            weights: vec![100.0; shares.len()],
             slacks: vec![0.0; shares.len()],
             shares,
         };

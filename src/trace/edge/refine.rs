@@ -14,8 +14,8 @@ pub(super) struct Target {
     pub(super) band: Band,
     /// The share of each pixel of the band.
     pub(super) shares: Vec<f64>,
-    /// Standard deviation of each share; infinite where nothing is known.
-    pub(super) sigmas: Vec<f64>,
+    /// 1 / the standard deviation of each share; 0 where nothing is known.
+    pub(super) weights: Vec<f64>,
     /// How far the coverage of each pixel may be from its share for nothing, as other things may be there.
     pub(super) slacks: Vec<f64>,
 }
@@ -24,8 +24,23 @@ impl Target {
     /// How far a share is from that of a pixel of the band, in units of its deviation.
     pub(super) fn error(&self, pixel: usize, share: f64) -> f64 {
         let away = share - self.shares[pixel];
-        let slack = self.slacks[pixel];
-        (away - away.clamp(-slack, slack)) / self.sigmas[pixel]
+        beyond(away, self.slacks[pixel]) * self.weights[pixel]
+    }
+
+    /// χ² of all pixels of the band, which are covered like this.
+    fn chi2(&self, shares: &[f64]) -> f64 {
+        // Eight sums go side by side.
+        let mut sums = [0.0; 8];
+        let parts = self.shares.chunks(8).zip(self.slacks.chunks(8));
+        let parts = parts.zip(self.weights.chunks(8)).zip(shares.chunks(8));
+        for (((own, slacks), weights), shares) in parts {
+            let pixels = own.iter().zip(slacks).zip(weights).zip(shares);
+            for (sum, (((own, slack), weight), share)) in sums.iter_mut().zip(pixels) {
+                let error = beyond(share - own, *slack) * weight;
+                *sum += error * error;
+            }
+        }
+        sums.iter().sum()
     }
 
     /// Half of χ² of some pixels of the band that are covered like this.
@@ -33,6 +48,11 @@ impl Target {
         let errors = pixels.iter().map(|&pixel| self.error(pixel, shares[pixel]));
         0.5 * errors.map(|error| error * error).sum::<f64>()
     }
+}
+
+/// How far a difference is outside of a slack.
+fn beyond(away: f64, slack: f64) -> f64 {
+    (away - slack).max(0.0) + (away + slack).min(0.0)
 }
 
 /// Standard deviation of the angle of a smooth joint, rad.
@@ -155,10 +175,8 @@ impl<'a> Moving<'a> {
 
     /// χ²: the squares of all errors in units of their deviations.
     fn cost(&self, ring: &Ring, shares: &[f64]) -> f64 {
-        let errors = shares.iter().enumerate();
-        let errors = errors.map(|(pixel, share)| self.target.error(pixel, *share));
         let angles = self.joints.iter().map(|&i| ring.angle(i) / ANGLE);
-        errors.chain(angles).map(|error| error * error).sum()
+        self.target.chi2(shares) + angles.map(|error| error * error).sum::<f64>()
     }
 
     /// The damped step from here.
@@ -179,11 +197,10 @@ impl<'a> Moving<'a> {
         };
         // 1. The pixels that edges touch.
         const NONE: u32 = u32::MAX;
-        let mut rows = vec![NONE; target.sigmas.len()];
+        let mut rows = vec![NONE; target.weights.len()];
         let (mut pixels, mut slopes) = (Vec::new(), Vec::new());
         for (pixel, unknown, slope) in coverage.slopes() {
-            let sigma = target.sigmas[pixel];
-            let is_open = sigma.is_finite() && target.error(pixel, shares[pixel]) != 0.0;
+            let is_open = target.error(pixel, shares[pixel]) != 0.0;
             let Some(index) = self.indices[unknown].filter(|_| is_open) else {
                 continue;
             };
@@ -192,7 +209,7 @@ impl<'a> Moving<'a> {
                 pixels.push(pixel);
                 slopes.resize(slopes.len() + self.count, 0.0);
             }
-            slopes[rows[pixel] as usize * self.count + index] += slope / sigma;
+            slopes[rows[pixel] as usize * self.count + index] += slope * target.weights[pixel];
         }
         let mut terms = Vec::new();
         for (pixel, slopes) in pixels.into_iter().zip(slopes.chunks(self.count.max(1))) {
