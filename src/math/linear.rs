@@ -34,6 +34,13 @@ impl<const R: usize> Normal<R> {
         }
     }
 
+    /// Σ right side · x, summed over all right sides: by how much a solution lessens the squared error.
+    pub(crate) fn gain(&self, solution: &[[f64; R]]) -> f64 {
+        let rows = self.right.row_iter().zip(solution);
+        rows.map(|(row, x)| row.iter().zip(x).map(|(b, x)| b * x).sum::<f64>())
+            .sum()
+    }
+
     /// The solution for each unknown; `None` unless the equations determine all of them.
     pub(crate) fn solve(self) -> Option<Vec<[f64; R]>> {
         let solution = self.left.cholesky()?.solve(&self.right);

@@ -62,6 +62,9 @@ const FARTHEST: f64 = 0.7;
 /// The descent ends when an iteration lessens the sum by a smaller share than this.
 const ENOUGH: f64 = 1e-3;
 
+/// All iterations together gain at most this many times as much as the first one promises, by the linear model of coverage. Of 63 clip
+/// arts, 1, 1.5 and 3 need 1.02, 1 and 1 times the points, and 0.8, 1 and 1.2 times the steps.
+const PROMISE: f64 = 1.5;
 /// All further iterations together gain at most this many times as much as the last one. A guess.
 const HOPE: f64 = 3.0;
 
@@ -288,26 +291,30 @@ pub(super) fn refined(
     let mut cost = moving.cost(&ring, &shares);
     for i in 0..iterations {
         let (equations, scale) = moving.equations(&ring, &coverage, &shares);
-        // Longer steps as long as they help, shorter ones until one does.
-        let better = (0..9).find_map(|_| {
+        // Longer steps as long as they help, shorter ones until one does, or promises too little.
+        let mut better = None;
+        for _ in 0..9 {
             let mut damped = equations.clone();
             for (k, scale) in scale.iter().enumerate() {
                 damped.add(&[(k, 1.0)], [0.0], damping * scale);
             }
-            let moved = damped.solve().map(|step| {
+            if let Some(step) = damped.solve() {
+                let promised = equations.gain(&step);
+                if promised < ENOUGH * cost || cost - PROMISE * promised > most {
+                    break;
+                }
                 let ring = moving.moved(&ring, &step);
                 let coverage = moving.coverage(&ring);
                 let shares = coverage.shares();
-                let cost = moving.cost(&ring, &shares);
-                (ring, coverage, shares, cost)
-            });
-            let better = moved.filter(|moved| moved.3 < cost && !moved.1.is_outside);
-            damping = match better {
-                Some(_) => (damping / 5.0_f64).max(1e-7),
-                None => damping * 6.0,
-            };
-            better
-        });
+                let now = moving.cost(&ring, &shares);
+                if now < cost && !coverage.is_outside {
+                    damping = (damping / 5.0_f64).max(1e-7);
+                    better = Some((ring, coverage, shares, now));
+                    break;
+                }
+            }
+            damping *= 6.0;
+        }
         let Some(better) = better else {
             break;
         };
