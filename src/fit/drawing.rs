@@ -297,9 +297,9 @@ impl Drawing {
         free.partition_point(|&own| own < stage)
     }
 
-    /// True if all free marks were traced where they are seen, so that no descent knows better.
+    /// True if there are free marks, and all of them were traced where they are seen, so that no descent knows better.
     pub(super) fn is_placed(&self) -> bool {
-        self.placed() == self.free().len()
+        !self.free().is_empty() && self.placed() == self.free().len()
     }
 
     /// True for a traced drawing of few marks, which come to share widths and colours.

@@ -41,8 +41,8 @@ const FEW_STROKES: usize = 64;
 const HALVINGS: usize = 4;
 /// The range goes so far above the usual quality where that keeps the budget, dB. A guess.
 const BEYOND_DB: f64 = 16.0;
-/// A drawing with areas that has at most so many marks, and is at least as faithful, dB, is not compared with strokes alone. Both are
-/// guesses.
+/// A drawing with areas that has at most so many marks, unless all are where they were seen, and is at least as faithful, dB, is not
+/// compared with strokes alone. Both are guesses.
 const FEW_MARKS: usize = 30;
 const FAITHFUL_DB: f64 = 38.0;
 // Bounds of a finished drawing by strokes alone, measured on nine pictures that have doubtful areas.
@@ -196,7 +196,8 @@ fn by_strokes_alone(config: &Config) -> Option<Config> {
 fn has_doubtful_areas(drawn: &Drawn) -> bool {
     let scene = &drawn.fit.scene;
     let db = drawn.file.as_ref().map_or(0.0, |file| psnr_db(file.mse()));
-    scene.areas().next().is_some() && (scene.len() > FEW_MARKS || db < FAITHFUL_DB)
+    let are_many = scene.len() > FEW_MARKS && !drawn.is_placed;
+    scene.areas().next().is_some() && (are_many || db < FAITHFUL_DB)
 }
 
 /// The starts of a fit, drawn one after the other. Their observer sees them as one piece of work.

@@ -68,9 +68,11 @@ impl<'a> Choice<'a> {
         }
     }
 
-    /// True if there is a shape that no stroke has a part of.
-    pub(super) fn has_areas(&self) -> bool {
-        self.flat.shapes().any(|region| !self.is_grouped(region))
+    /// True if pens may draw all that there is.
+    pub(super) fn may_be_lines(&self) -> bool {
+        let mut shapes = self.flat.shapes();
+        let is_drawn = |group: &Group| self.pens(group).is_some();
+        shapes.all(|region| self.is_grouped(region)) && self.groups.par_iter().all(is_drawn)
     }
 
     /// True if strokes have a part of a region.
@@ -87,7 +89,10 @@ impl<'a> Choice<'a> {
     ) -> Result<Vec<Traced>, Vec<(u32, u32)>> {
         let Self { flat, strokes, .. } = self;
         let fills = flat.fills();
-        let wins = |group: &Group| stroked(group, flat, &fills, strokes, self.pixels, price);
+        let wins = |group: &Group| {
+            let pens = self.pens(group);
+            pens.filter(|_| self.is_worth_strokes(group, &fills, price))
+        };
         let pens: Vec<Option<Vec<Pen>>> = self.groups.par_iter().map(wins).collect();
         let has_bands = pens
             .iter()
@@ -205,6 +210,84 @@ impl<'a> Choice<'a> {
         })
     }
 
+    /// The pens of the strokes of a group, if they draw its regions.
+    fn pens(&self, group: &Group) -> Option<Vec<Pen>> {
+        let Self { flat, pixels, .. } = self;
+        let strokes = self.strokes_of(group);
+        // What lines join is a thing, unless it is a line itself.
+        let is_blob = matches!(flat.part(group.regions[0]), Part::Blob(_));
+        let is_dot = is_blob && strokes.iter().any(|stroke| length(stroke) < LINE);
+        if is_dot || darken(&strokes, pixels) {
+            return None;
+        }
+        let members = flat.members(&group.regions);
+        let shape = Shape {
+            inside: |p| flat.share_at(p, &members),
+            region: |p| pixels.at(p).map(|i| flat.region(i)),
+        };
+        let even: Vec<Option<Pen>> = strokes.iter().map(|stroke| shape.pen(stroke)).collect();
+        let is_even = |(_, pen): &(&&Stroke, &Option<Pen>)| pen.is_some();
+        let lengths = |odd: bool| {
+            let own = strokes.iter().zip(&even).filter(|own| odd != is_even(own));
+            own.map(|(stroke, _)| length(stroke) * stroke.radius as f32)
+                .sum::<f32>()
+        };
+        // Of the lines of a shape that came apart, few run so close to another one that neither is even.
+        let is_apart = matches!(flat.part(group.regions[0]), Part::Lines(_));
+        let most_odd = if is_apart {
+            MOST_ODD * lengths(false)
+        } else {
+            0.0
+        };
+        if lengths(true) > most_odd || even.iter().all(Option::is_none) {
+            return None;
+        }
+        let pens = strokes.iter().zip(even);
+        let pens = pens.map(|(stroke, pen)| pen.unwrap_or(Pen::round(stroke.radius as f32)));
+        let mut pens: Vec<Pen> = pens.collect();
+        // Letters of bars are things, and no lines.
+        // Ends that are hidden are like those that are seen.
+        let is_square = |pen: &Pen| pen.band.is_some() && !pen.is_round;
+        match pens.iter().any(is_square) {
+            true => {
+                let lengths: f32 = strokes.iter().map(|stroke| length(stroke)).sum();
+                if lengths < LONG * strokes.len() as f32 {
+                    return None;
+                }
+            }
+            false => pens.iter_mut().for_each(|pen| pen.band = None),
+        }
+        is_covered(&strokes, flat, &members, group, pixels).then_some(pens)
+    }
+
+    /// The strokes of a group, as they were traced.
+    fn strokes_of(&self, group: &Group) -> Vec<&Stroke> {
+        let strokes = group.strokes.iter();
+        strokes.map(|&i| &self.strokes[i].stroke).collect()
+    }
+
+    /// True if strokes that draw a group cost little more than its areas, which are no ellipse.
+    fn is_worth_strokes(
+        &self,
+        group: &Group,
+        fills: &[Fill],
+        price: &(impl Fn(&Mark) -> f32 + Sync),
+    ) -> bool {
+        let strokes = self.strokes_of(group).into_iter();
+        let of_strokes: f32 = strokes
+            .map(|stroke| price(&without_wavering(stroke).into()))
+            .sum();
+        let own = |fill: &&Fill| group.regions.contains(&fill.region);
+        let areas: Vec<Area> = fills
+            .iter()
+            .filter(own)
+            .flat_map(|fill| self.flat.area_of(fill))
+            .collect();
+        let of_areas: f32 = areas.iter().map(|area| price(&area.clone().into())).sum();
+        let is_ellipse = matches!(&areas[..], [area] if is_ellipse(area));
+        !is_ellipse && of_strokes <= MOST_PRICE * of_areas
+    }
+
     /// The strokes of a group as lines of one width, if these have a shorter description than its regions.
     fn lines(
         &self,
@@ -212,8 +295,7 @@ impl<'a> Choice<'a> {
         placing: &Placing<'_>,
         fills: &[Fill<Ring>],
     ) -> Option<Vec<Stroke>> {
-        let strokes = group.strokes.iter().map(|&i| &self.strokes[i].stroke);
-        let strokes: Vec<&Stroke> = strokes.collect();
+        let strokes = self.strokes_of(group);
         if darken(&strokes, self.pixels) {
             return None;
         }
@@ -521,74 +603,6 @@ fn without_wavering(stroke: &Stroke) -> Stroke {
         path: polyline.unwrap_or_else(|| stroke.path.clone()),
         ..stroke.clone()
     }
-}
-
-/// The pens of the strokes of a group, if they draw its regions and areas cost as much.
-fn stroked(
-    group: &Group,
-    flat: &Flat<'_>,
-    fills: &[Fill],
-    strokes: &[TracedStroke],
-    pixels: &Pixels<'_>,
-    price: &(impl Fn(&Mark) -> f32 + Sync),
-) -> Option<Vec<Pen>> {
-    let strokes: Vec<&Stroke> = group.strokes.iter().map(|&i| &strokes[i].stroke).collect();
-    let of_strokes: f32 = strokes
-        .iter()
-        .map(|&stroke| price(&without_wavering(stroke).into()))
-        .sum();
-    let own = |fill: &&Fill| group.regions.contains(&fill.region);
-    let areas: Vec<Area> = fills
-        .iter()
-        .filter(own)
-        .flat_map(|fill| flat.area_of(fill))
-        .collect();
-    let of_areas: f32 = areas.iter().map(|area| price(&area.clone().into())).sum();
-    let is_ellipse = matches!(&areas[..], [area] if is_ellipse(area));
-    // What lines join is a thing, unless it is a line itself.
-    let is_blob = matches!(flat.part(group.regions[0]), Part::Blob(_));
-    let is_dot = is_blob && strokes.iter().any(|stroke| length(stroke) < LINE);
-    if is_ellipse || is_dot || of_strokes > MOST_PRICE * of_areas || darken(&strokes, pixels) {
-        return None;
-    }
-    let members = flat.members(&group.regions);
-    let shape = Shape {
-        inside: |p| flat.share_at(p, &members),
-        region: |p| pixels.at(p).map(|i| flat.region(i)),
-    };
-    let even: Vec<Option<Pen>> = strokes.iter().map(|stroke| shape.pen(stroke)).collect();
-    let is_even = |(_, pen): &(&&Stroke, &Option<Pen>)| pen.is_some();
-    let lengths = |odd: bool| {
-        let own = strokes.iter().zip(&even).filter(|own| odd != is_even(own));
-        own.map(|(stroke, _)| length(stroke) * stroke.radius as f32)
-            .sum::<f32>()
-    };
-    // Of the lines of a shape that came apart, few run so close to another one that neither is even.
-    let is_apart = matches!(flat.part(group.regions[0]), Part::Lines(_));
-    let most_odd = if is_apart {
-        MOST_ODD * lengths(false)
-    } else {
-        0.0
-    };
-    if lengths(true) > most_odd || even.iter().all(Option::is_none) {
-        return None;
-    }
-    let pens = strokes.iter().zip(even);
-    let pens = pens.map(|(stroke, pen)| pen.unwrap_or(Pen::round(stroke.radius as f32)));
-    let mut pens: Vec<Pen> = pens.collect();
-    // Letters of bars are things, and no lines.
-    // Ends that are hidden are like those that are seen.
-    let is_square = |pen: &Pen| pen.band.is_some() && !pen.is_round;
-    match pens.iter().any(is_square) {
-        true => {
-            let lengths: f32 = strokes.iter().map(|stroke| length(stroke)).sum();
-            if lengths < LONG * strokes.len() as f32 {
-                return None;
-            }
-        }
-        false => pens.iter_mut().for_each(|pen| pen.band = None),
-    }
-    is_covered(&strokes, flat, &members, group, pixels).then_some(pens)
 }
 
 /// Lines with square ends have so many radii on average. A guess.

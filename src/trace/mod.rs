@@ -120,7 +120,7 @@ fn marks_of(
         // A drawing of lines stays one where they are not found before a descent.
         let has_areas = |traced: &[Traced]| traced.iter().any(|t| t.mark.as_area().is_some());
         if let Some(placed) = &placed
-            && (choice.has_areas() || !has_areas(placed))
+            && (!has_areas(placed) || !choice.may_be_lines())
         {
             return placed.clone();
         }

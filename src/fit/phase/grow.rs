@@ -26,6 +26,9 @@ const PAYING_SHARE: f64 = 0.3;
 /// Growing ends this much below the fidelity asked for, dB. The polish brings 5 dB on photographs and 15 on flat art, and a search from
 /// below begins with few strokes. 8 instead of 12: kodim04 at 36 dB takes 32.8 instead of 11.7 s.
 const POLISH_GAIN_DB: f64 = 12.0;
+/// A drawing that is placed, and as faithful, has all its strokes, dB. Of 63 clip arts no such one kept a further stroke, and two of 37 and
+/// 42 dB did.
+const PLACED_DB: f64 = 45.0;
 /// The least that a stage has to add to the fidelity for each doubling of the strokes, where a fidelity is asked for, dB. Photographs
 /// gain 2.2; flat art, whose edges strokes of two points follow badly, falls from 2 to 0.1.
 const LEAST_SLOPE_DB: f64 = 1.3;
@@ -56,6 +59,11 @@ pub(in crate::fit) fn next_stage(session: &mut Session<'_>) -> Result<Outcome> {
 /// Why further stages are superfluous, if they are.
 pub(super) fn enough(session: &Session<'_>) -> Option<Stop> {
     let staged_db = session.history.records.last()?.psnr_db;
+    // What is where it is seen leaves no more than the antialiasing of a renderer.
+    let is_done = session.drawing.is_placed() && staged_db >= PLACED_DB;
+    if is_done && session.config.is_open() {
+        return Some(Stop::Converged);
+    }
     let strokes = session.drawing.len();
     let pays = session.history.stage.is_none_or(|stage| {
         let least = PAYING_SHARE * stage.planned.count as f64;

@@ -39,7 +39,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
         || is_rejected
         || !session.config.allows_points()
         // What is where it is seen leaves nothing.
-        || (session.drawing.len() > 0 && session.drawing.is_placed())
+        || session.drawing.is_placed()
         || session.history.traced[0] == rounds
         || grow::enough(session) == Some(Stop::Psnr);
     let traced = match is_over {

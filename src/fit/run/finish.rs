@@ -14,6 +14,8 @@ use crate::scene::{Dropped, Quantized, Scene, Stage};
 pub(in crate::fit) struct Drawn {
     pub(in crate::fit) fit: Fit,
     pub(in crate::fit) file: Option<RenderedFile>,
+    /// True if its marks are where they were seen.
+    pub(in crate::fit) is_placed: bool,
 }
 
 /// The result of the fit: the best file or, if no file was looked at and none is to be `compared`, the drawing as it is.
@@ -27,6 +29,7 @@ pub(in crate::fit) fn finish(mut session: Session<'_>, compared: bool) -> Result
         Some(file) => file.rounded.clone(),
         None => session.writer.round(&session.drawing),
     };
+    let is_placed = session.drawing.is_placed();
     let stages = records(&mut session, &rounded);
     let soft = soft(&mut session.drawing, &rounded.scene)?;
     let fit = Fit {
@@ -47,7 +50,11 @@ pub(in crate::fit) fn finish(mut session: Session<'_>, compared: bool) -> Result
             ..rounded.dropped
         },
     };
-    Ok(Drawn { fit, file })
+    Ok(Drawn {
+        fit,
+        file,
+        is_placed,
+    })
 }
 
 /// The records of the stages that have strokes in the finished drawing, numbered like its layers, with the final number
