@@ -75,6 +75,12 @@ impl<'a> Choice<'a> {
         shapes.all(|region| self.is_grouped(region)) && self.groups.par_iter().all(is_drawn)
     }
 
+    /// True if descents find edges sooner than what places them, as there is much of them.
+    fn is_long(&self) -> bool {
+        let edges = self.flat.edges();
+        edges > MOST_EDGES || (edges > MOST_OF_LINES && self.may_be_lines())
+    }
+
     /// True if strokes have a part of a region.
     fn is_grouped(&self, region: u32) -> bool {
         let mut groups = self.groups.iter();
@@ -124,10 +130,10 @@ impl<'a> Choice<'a> {
     /// apart, edges are long, lines are left that nothing draws, or colours do not tell where edges are.
     pub(super) fn placed(&self, price: &(impl Fn(&Mark) -> f32 + Sync)) -> Option<Vec<Traced>> {
         // Where lines join blobs of their colour is no edge, so that descents find it.
-        if self.flat.is_apart() {
+        if self.flat.is_apart() || self.is_long() {
             return None;
         }
-        let placing = self.flat.placing()?;
+        let placing = self.flat.placing();
         // Where there is no damage, edges that colours do not tell are those of something else, such as gradients.
         let is_clean = self.flat.tracing.doubt == 0.0;
         let fills = placing.fills(|region| is_clean && !self.is_grouped(region))?;
@@ -385,6 +391,12 @@ impl<'a> Choice<'a> {
         }
     }
 }
+
+/// Most pairs of pixels between areas that are placed where they are seen: blobs of noise of 1,000 px, which have 23,000, take 22 s instead of
+/// 16 s. Emoji of 1,024 px have 7,000 to 13,000.
+const MOST_EDGES: u32 = 20_000;
+/// As [`MOST_EDGES`], of lines: a cat in lines of 1,000 px, which has more, takes 6.1 s instead of 2.5 s, and has 5 dB less.
+const MOST_OF_LINES: u32 = 6_000;
 
 /// Widths that differ by a smaller share are those of one pen. A guess.
 const ONE_PEN: f64 = 0.04;

@@ -78,9 +78,6 @@ const LEAST_FLAT: f32 = 0.6;
 const LEAST_EXPLAINED: f32 = 0.9;
 /// Farthest that a hidden edge may be beyond the samples, px. A guess.
 const HIDDEN: f32 = 32.0;
-/// Most pixel edges between areas that are placed where they are seen: of longer outlines, descents take less time. Blobs of noise of
-/// 2,000 px take 112 s without this bound, and 41 s with it.
-const MOST_EDGES: u32 = 6_000;
 
 impl<'a> Flat<'a> {
     /// The stack of a picture whose shapes come apart like this, if it is one of few colours.
@@ -211,11 +208,16 @@ impl<'a> Flat<'a> {
         self.filled(layer, rings.collect(), gains)
     }
 
-    /// What places shapes where their edges are seen, unless these are too long.
-    pub(in crate::trace) fn placing(&self) -> Option<Placing<'_>> {
+    /// What places shapes where their edges are seen.
+    pub(in crate::trace) fn placing(&self) -> Placing<'_> {
+        Placing::of(self)
+    }
+
+    /// The number of pairs of pixels in which regions touch.
+    pub(super) fn edges(&self) -> u32 {
         let touching = self.neighbours.iter().flat_map(BTreeMap::values);
-        // Each pair of pixels counts for both of its regions.
-        (touching.sum::<u32>() <= 2 * MOST_EDGES).then(|| Placing::of(self))
+        // Each pair counts for both of its regions.
+        touching.sum::<u32>() / 2
     }
 
     /// The shares of pixels that a layer covers, and for each region whether it hides the layer's outline.
