@@ -111,7 +111,7 @@ pub(super) fn draw<'a>(
     // 3. Strokes alone, where areas are doubtful.
     let has_time = |limit: Duration| since.elapsed() <= limit.mul_f64(LATEST);
     let may_compete = stop != Stop::Interrupted
-        && has_doubtful_areas(&drawn)
+        && has_doubtful_areas(&drawn, task.doubt)
         && config.budget.time.is_none_or(has_time);
     let mut best = starts.better(drawn);
     if let Some(config) = by_strokes.filter(|_| may_compete) {
@@ -192,12 +192,13 @@ fn by_strokes_alone(config: &Config) -> Option<Config> {
     })
 }
 
-/// True if there are areas that strokes alone may be better than.
-fn has_doubtful_areas(drawn: &Drawn) -> bool {
+/// True if there are areas that strokes alone may be better than, in a picture that may be off by `doubt`: what a damage leaves is no
+/// reason to doubt them.
+fn has_doubtful_areas(drawn: &Drawn, doubt: f32) -> bool {
     let scene = &drawn.fit.scene;
     let db = drawn.file.as_ref().map_or(0.0, |file| psnr_db(file.mse()));
     let are_many = scene.len() > FEW_MARKS && !drawn.is_placed;
-    scene.areas().next().is_some() && (are_many || db < FAITHFUL_DB)
+    scene.areas().next().is_some() && (are_many || (doubt == 0.0 && db < FAITHFUL_DB))
 }
 
 /// The starts of a fit, drawn one after the other. Their observer sees them as one piece of work.
