@@ -34,7 +34,8 @@ impl<const R: usize> Normal<R> {
         }
     }
 
-    /// Σ right side · x, summed over all right sides: by how much a solution lessens the squared error.
+    /// Σ right side · x, summed over all right sides: by how much the solution lessens the squared error. One that was damped lessens it
+    /// by more than that.
     pub(crate) fn gain(&self, solution: &[[f64; R]]) -> f64 {
         let rows = self.right.row_iter().zip(solution);
         rows.map(|(row, x)| row.iter().zip(x).map(|(b, x)| b * x).sum::<f64>())
@@ -70,6 +71,24 @@ mod tests {
                 "{solution:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_solution_lessens_the_squared_error_by_its_gain() {
+        let (mut equations, mut damped) = (Normal::of(1), Normal::of(1));
+        for value in [1.0, 4.0, 4.0] {
+            equations.add(&[(0, 2.0)], [value], 1.0);
+            damped.add(&[(0, 2.0)], [value], 1.0);
+        }
+        damped.add(&[(0, 1.0)], [0.0], 3.0);
+        let error = |x: f64| {
+            let squares = [1.0, 4.0, 4.0].map(|v| (v - 2.0 * x) * (v - 2.0 * x));
+            squares.iter().sum::<f64>()
+        };
+        let lessens = |x: f64| error(0.0) - error(x);
+        let [best, near] = [equations.clone(), damped].map(|e| e.solve().unwrap());
+        assert!((equations.gain(&best) - lessens(best[0][0])).abs() < 1e-12);
+        assert!(equations.gain(&near) < lessens(near[0][0]));
     }
 
     #[test]

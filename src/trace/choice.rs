@@ -133,7 +133,7 @@ impl<'a> Choice<'a> {
         if self.flat.is_apart() || self.is_long() {
             return None;
         }
-        let placing = self.flat.placing();
+        let placing = Placing::of(self.flat);
         // Where there is no damage, edges that colours do not tell are those of something else, such as gradients.
         let is_clean = self.flat.tracing.doubt == 0.0;
         let fills = placing.fills(|region| is_clean && !self.is_grouped(region))?;

@@ -7,7 +7,7 @@ use super::coverage::{Band, Coverage, Page};
 use super::curve::Ring;
 use super::describe::PRICE;
 use super::refine::{Target, all, chi2, refined};
-use super::segment::{Knot, NEARLY, Segment, arc_middle, directions, weights};
+use super::segment::{Knot, NEARLY, Segment, arc_middle, directions, distance2, weights};
 use crate::math::{self, Point, Vec2};
 
 /// Iterations in which an edit settles.
@@ -349,15 +349,7 @@ fn off(segment: &Segment, [from, to]: [Point; 2], places: &[Point]) -> f64 {
         .iter()
         .map(|vertex| vertex.at)
         .collect();
-    let nearest = |p: &Point| {
-        let pieces = curve
-            .windows(2)
-            .map(|ends| kurbo::Line::new(ends[0], ends[1]));
-        let squares =
-            pieces.map(|line| kurbo::ParamCurveNearest::nearest(&line, *p, 0.0).distance_sq);
-        squares.fold(f64::INFINITY, f64::min)
-    };
-    let sum: f64 = places.iter().map(nearest).sum();
+    let sum: f64 = places.iter().map(|p| distance2(&curve, *p)).sum();
     (sum / places.len() as f64).sqrt()
 }
 

@@ -284,17 +284,8 @@ mod tests {
     use super::super::coverage::{Band, Coverage, Page};
     use super::super::curve::Ring;
     use super::super::describe;
+    use super::super::segment::distance2;
     use super::*;
-
-    /// The distance of a place from a polyline.
-    fn distance(p: Point, places: &[Point]) -> f64 {
-        let lines = places
-            .windows(2)
-            .map(|ends| kurbo::Line::new(ends[0], ends[1]));
-        let squares =
-            lines.map(|line| kurbo::ParamCurveNearest::nearest(&line, p, 0.0).distance_sq);
-        squares.fold(f64::INFINITY, f64::min).sqrt()
-    }
 
     #[test]
     fn a_line_with_round_corners_covers_what_is_near_its_middle() {
@@ -320,7 +311,7 @@ mod tests {
                 let at = |k: i32, i: i32| f64::from(k) + (f64::from(i) + 0.5) / f64::from(STEPS);
                 let inside = (0..STEPS * STEPS).filter(|k| {
                     let p = Point::new(at(x, k % STEPS), at(y, k / STEPS));
-                    distance(p, &places) < 4.2
+                    distance2(&places, p).sqrt() < 4.2
                 });
                 let expected = inside.count() as f64 / f64::from(STEPS * STEPS);
                 assert!(

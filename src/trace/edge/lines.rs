@@ -12,7 +12,7 @@ use super::describe::{self, PRICE, Sample, corner};
 use super::edits;
 use super::line::{FLAT, Line};
 use super::refine::{self, Target};
-use super::segment::{Knot, Segment};
+use super::segment::{Knot, Segment, distance2};
 use super::shapes;
 use super::{FREE, Shares, whole};
 use crate::math::{self, Point, Vec2, median};
@@ -35,17 +35,6 @@ pub(in crate::trace) struct Middle {
     pub(in crate::trace) is_closed: bool,
     /// About half its width, px.
     pub(in crate::trace) radius: f64,
-}
-
-impl Middle {
-    /// True if a place is within a distance.
-    fn is_within(&self, distance: f64, p: Point) -> bool {
-        let mut pieces = self.places.windows(2);
-        pieces.any(|ends| {
-            let piece = kurbo::Line::new(ends[0], ends[1]);
-            kurbo::ParamCurveNearest::nearest(&piece, p, 0.0).distance_sq < distance * distance
-        })
-    }
 }
 
 /// Lines along some middles that cover what `shares` tell, and the length of the description of the page by them; `None` if that will not
@@ -479,7 +468,7 @@ fn beyond(middles: &[Middle], i: usize, profiles: &[Profile]) -> f64 {
         let near = 2.0 * middle.radius + 2.0;
         let mut others = middles.iter().enumerate().filter(|(k, _)| *k != i);
         corners.iter().any(|corner| (*corner - p).hypot() < near)
-            || others.any(|(_, other)| other.is_within(near + other.radius, p))
+            || others.any(|(_, other)| distance2(&other.places, p).sqrt() < near + other.radius)
     };
     let off = profiles.iter().map(|profile| match profile.width() {
         Some(own) => (own - width).abs(),

@@ -27,6 +27,14 @@ impl Segment {
     }
 }
 
+/// The squared distance of a place from a polyline.
+pub(super) fn distance2(places: &[Point], p: Point) -> f64 {
+    let pieces = places.windows(2);
+    let pieces = pieces.map(|ends| kurbo::Line::new(ends[0], ends[1]));
+    let squares = pieces.map(|piece| kurbo::ParamCurveNearest::nearest(&piece, p, 0.0).distance_sq);
+    squares.fold(f64::INFINITY, f64::min)
+}
+
 /// A vertex and the segment behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::trace) struct Knot {

@@ -208,11 +208,6 @@ impl<'a> Flat<'a> {
         self.filled(layer, rings.collect(), gains)
     }
 
-    /// What places shapes where their edges are seen.
-    pub(in crate::trace) fn placing(&self) -> Placing<'_> {
-        Placing::of(self)
-    }
-
     /// The number of pairs of pixels in which regions touch.
     pub(super) fn edges(&self) -> u32 {
         let touching = self.neighbours.iter().flat_map(BTreeMap::values);

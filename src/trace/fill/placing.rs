@@ -33,7 +33,7 @@ pub(in crate::trace) struct Placing<'a> {
 }
 
 impl<'a> Placing<'a> {
-    pub(super) fn of(flat: &'a Flat<'a>) -> Self {
+    pub(in crate::trace) fn of(flat: &'a Flat<'a>) -> Self {
         Self {
             flat,
             spreads: spreads(flat),
