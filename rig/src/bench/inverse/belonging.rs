@@ -13,10 +13,10 @@ use strokefit::Result;
 use strokefit::verify::{self, Size};
 
 /// Files with more elements are not judged: each costs a render.
-const MOST: usize = 400;
+pub(super) const MOST: usize = 400;
 
 /// Least change of a pixel that counts as one, of the sum of its four channels.
-const CHANGED: f32 = 4.0 / 255.0;
+pub(super) const CHANGED: f32 = 4.0 / 255.0;
 
 /// The things of an artist.
 #[derive(Debug)]
@@ -83,7 +83,7 @@ fn changes(svg: &str, ranges: Vec<Range<usize>>, size: Size) -> Result<Option<Ve
 }
 
 /// Colour, multiplied by alpha, and alpha of each pixel.
-fn drawn(svg: &str, size: Size) -> Result<Vec<[f32; 4]>> {
+pub(super) fn drawn(svg: &str, size: Size) -> Result<Vec<[f32; 4]>> {
     let picture = verify::render(svg, size, None)?;
     let [red, green, blue] = picture.planes();
     let pixel = |i: usize| {

@@ -8,6 +8,7 @@ mod centre_lines;
 mod color_difference;
 mod displacement;
 mod distances;
+mod hidden;
 
 use std::time::Instant;
 
@@ -22,6 +23,7 @@ use anatomy::Anatomy;
 use belonging::Things;
 use displacement::Areas;
 use distances::Distances;
+use hidden::Reaches;
 use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
 use strokefit::metrics::psnr;
@@ -117,6 +119,7 @@ struct Artist {
     db: f64,
     areas: Areas,
     things: Things,
+    reaches: Reaches,
 }
 
 impl Truth {
@@ -154,6 +157,7 @@ impl Truth {
                 db: decibels(svg, &picture)?,
                 areas,
                 things: Things::of(svg, exactly(&picture))?,
+                reaches: Reaches::of(svg, exactly(&picture))?,
             }),
             picture,
         })
@@ -363,6 +367,7 @@ impl<'a> Case<'a> {
             delta_e: Some(delta_e(&artist.large, svg)?),
             displacement_px: artist.areas.displacement_px(svg)?,
             belonging: artist.things.belonging(svg)?,
+            hidden: artist.reaches.hidden(svg)?,
             mean_px: apart.map(|apart| apart.mean),
             largest_px: apart.map(|apart| apart.largest),
             ..entry

@@ -37,6 +37,22 @@ pub struct Belonging {
     pub locality: f64,
 }
 
+/// What an artist's elements hide beneath others, px².
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Hidden {
+    /// The hidden parts of the artist's elements.
+    pub px: usize,
+    /// Where they and those of the same elements of the file differ.
+    pub apart_px: usize,
+}
+
+impl Hidden {
+    /// The difference in units of what is hidden.
+    pub fn apart(&self) -> f64 {
+        self.apart_px as f64 / self.px.max(1) as f64
+    }
+}
+
 /// A picture, and what was made of it. What needs the artist's file is `None` without one.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct CaseEntry {
@@ -74,6 +90,9 @@ pub struct CaseEntry {
     pub largest_px: Option<f64>,
     /// Elements as the artist's things; `None` where there are too many.
     pub belonging: Option<Belonging>,
+    /// Their hidden parts; `None` where nothing is hidden, or there are too many.
+    #[serde(default)]
+    pub hidden: Option<Hidden>,
     /// Wall time, s.
     pub wall_s: Option<f64>,
     /// Why nothing was made.
@@ -224,7 +243,7 @@ fn drawn(e: &CaseEntry, of: fn(&Contents) -> usize) -> String {
     e.original.map_or_else(String::new, |c| of(&c).to_string())
 }
 
-const COLUMNS: [Column<CaseEntry>; 32] = [
+const COLUMNS: [Column<CaseEntry>; 33] = [
     ("drawing", |e| e.drawing.clone()),
     ("family", |e| e.family.clone()),
     ("side_px", |e| e.side_px.to_string()),
@@ -254,6 +273,7 @@ const COLUMNS: [Column<CaseEntry>; 32] = [
     ("purity", |e| optional(e.belonging.map(|b| b.purity), 3)),
     ("coverage", |e| optional(e.belonging.map(|b| b.coverage), 3)),
     ("locality", |e| optional(e.belonging.map(|b| b.locality), 3)),
+    ("hidden_apart", |e| optional(e.hidden.map(|h| h.apart()), 3)),
     ("wall_s", |e| optional(e.wall_s, 3)),
     ("svg", CaseEntry::svg_name),
     ("failure", |e| e.failure.clone().unwrap_or_default()),

@@ -50,7 +50,7 @@ fn middle(values: Vec<f64>, digits: usize) -> String {
     optional(Some(median(values)).filter(|m| m.is_finite()), digits)
 }
 
-fn columns<'a>() -> [Column<Group<'a>>; 26] {
+fn columns<'a>() -> [Column<Group<'a>>; 27] {
     [
         ("drawings", |g| g.cases.len().to_string()),
         ("recognised", |g| {
@@ -121,6 +121,9 @@ fn columns<'a>() -> [Column<Group<'a>>; 26] {
                 g.mean(|e| e.belonging.map(|b| b.locality), 2),
             ];
             means.join(" ").trim().to_owned()
+        }),
+        ("hidden parts apart, median", |g| {
+            g.median(|e| e.hidden.map(|h| h.apart()), 2)
         }),
         ("s, median", |g| g.median(|e| e.wall_s, 2)),
         ("s, most", |g| {
