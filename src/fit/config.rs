@@ -33,7 +33,7 @@ pub struct Config {
     #[cfg_attr(feature = "cli", arg(skip))]
     pub budget: Budget,
     /// Quality, 0 to 60; higher keeps more. A stroke is kept while every byte it costs removes at least the squared error
-    /// that one pixel has at Q dB (default: 30, less for pictures over 768×512, unless --strokes, --psnr or --bytes is given)
+    /// that one pixel has at Q dB (default: 30, less for pictures over 768×512, and more where the drawing looks too little like the picture, unless --strokes, --psnr or --bytes is given)
     #[cfg_attr(feature = "cli", arg(long, value_name = "Q"))]
     pub quality: Option<f64>,
     /// How much time to spend for a better drawing

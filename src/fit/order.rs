@@ -7,7 +7,8 @@
 //!   ↓
 //! grow ⇄ stage                add strokes, stage by stage
 //!   ↓
-//! polish ⇄ stage              fit all strokes jointly, and double them while far from the fidelity asked for
+//! polish ⇄ stage              fit all strokes jointly, and double them while far from the fidelity asked for;
+//!                             go on to grow at a lower price if the drawing looks too little like the picture
 //!   ↓
 //! recover ─→ stage ─→ polish  draw small things that were lost on the way
 //!   ↓

@@ -5,6 +5,7 @@
 //! | `trace` | strokes are laid along the lines that are seen |
 //! | `grow` | stages are seeded, fitted on frozen strokes, and keep what pays |
 //! | `polish` | all strokes are fitted jointly, with relocation |
+//! | `floor` | a drawing that looks too little like the picture goes on at a lower price |
 //! | `recover` | small things that were lost on the way are traced again |
 //! | `restrict` | strokes get the colours and widths that the file may have |
 //! | `settle` | the last steps are taken against renders of the written file |
@@ -12,6 +13,7 @@
 
 pub(super) mod count;
 pub(super) mod descend;
+mod floor;
 pub(super) mod grow;
 pub(super) mod polish;
 pub(super) mod recover;
@@ -21,7 +23,7 @@ mod search;
 pub(super) mod settle;
 pub(super) mod trace;
 
-use super::order::{Outcome, Phase};
+use super::order::{Outcome, Phase, Purpose};
 use super::run::session::Session;
 use crate::error::Result;
 
@@ -35,7 +37,10 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<Outcome> {
         Phase::StagePolish(_) => grow::stage_polish(session)?,
         Phase::Polish(purpose) => {
             polish::polish(session, purpose)?;
-            count::approach_fidelity(session)
+            match purpose {
+                Purpose::Plan if session.config.is_open() => floor::reach_floor(session)?,
+                _ => count::approach_fidelity(session),
+            }
         }
         Phase::Recover => recover::recover(session)?,
         Phase::Restrict(_) => restrict::restrict(session)?,

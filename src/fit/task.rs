@@ -21,8 +21,8 @@ pub(super) struct Task {
     pub(super) page: Option<[u32; 2]>,
     /// Estimated RMS distance of the picture from the restored one, in 8-bit levels.
     pub(super) doubt: f32,
-    /// How much more quality the picture needs for want of contrast, dB.
-    pub(super) paleness_db: f64,
+    /// How much more quality a drawing on paper needs for want of contrast, dB; `None` of other pictures.
+    pub(super) paleness_db: Option<f64>,
     /// Most marks that areas are split into.
     pub(super) most_marks: usize,
 }
@@ -36,14 +36,19 @@ impl Task {
             focus: None,
             page: None,
             doubt: 0.0,
-            paleness_db: 0.0,
+            paleness_db: None,
             most_marks: usize::MAX,
         }
     }
 
     /// The price of what is drawn of a picture of `pixels` pixels.
     pub(super) fn price(&self, pixels: usize) -> Price {
-        Price::of(&self.config, self.doubt, self.paleness_db, pixels)
+        Price::of(
+            &self.config,
+            self.doubt,
+            self.paleness_db.unwrap_or(0.0),
+            pixels,
+        )
     }
 
     /// This task by another configuration.

@@ -10,10 +10,12 @@ use strokefit::rng;
 const PHOTOGRAPH: &str = "samples/rocket-320.png";
 
 /// Pictures, and options of fits of moderate length: all kinds of tasks that a fit has.
-const FITS: [(&str, &str); 6] = [
+const FITS: [(&str, &str); 7] = [
     // Circles and lines, and lines with square ends.
     ("tests/data/plans/markers.svg", ""),
     ("tests/data/plans/chevrons.svg", ""),
+    // Of 17 to 50 in SSIMULACRA2, so that the price is lowered.
+    (PHOTOGRAPH, ""),
     (PHOTOGRAPH, "--strokes 90"),
     (PHOTOGRAPH, "--psnr 27 --preset draft"),
     (

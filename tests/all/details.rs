@@ -1,8 +1,9 @@
 //! Small things are legible by default: labels, dashes, specks, thin borders.
 
-use crate::support::{drawn, picture, rendered};
-use strokefit::fit::{Config, Fit};
+use crate::support::{drawn, picture, rendered, sample};
+use strokefit::fit::{Config, DEFAULT_QUALITY, Fit};
 use strokefit::image::Image;
+use strokefit::metrics::ssimulacra2;
 use strokefit::verify::{Size, render};
 
 const WHITE: [f32; 3] = [1.0; 3];
@@ -142,4 +143,24 @@ fn borders_of_one_pixel_keep_their_contrast() {
         "{kept} of {}",
         border.len()
     );
+}
+
+#[test]
+fn what_looks_too_little_like_the_picture_is_drawn_in_more_detail() {
+    // A photograph whose things are a few pixels wide, and a dark one, of which 30 dB are little.
+    for (name, side, light) in [("rocket-320", 56, 1.0), ("chelsea-cat", 128, 0.2)] {
+        let planes = sample(name).reduced(side, side).into_planes();
+        let dimmed = |x, y, c: usize| light * planes[c][y * side + x];
+        let picture = Image::from_fn(side, side, 3, dimmed).unwrap();
+        let score = |quality| {
+            let config = Config {
+                quality,
+                ..Config::default()
+            };
+            let fit = drawn(&picture, &config);
+            ssimulacra2(&picture, &rendered(&fit.svg())).unwrap()
+        };
+        let [named, open] = [Some(DEFAULT_QUALITY), None].map(score);
+        assert!(named < 40.0 && open > 47.0, "{name}: {named} and {open}");
+    }
 }

@@ -16,12 +16,10 @@ const MOST_DRAWN: f64 = 0.5;
 /// Most paleness, dB: fainter drawings are noise. A guess.
 const MOST_DB: f64 = 10.0;
 
-/// How much more quality a drawing on paper needs, dB, because its contrast is less than usual; 0 of what is no such drawing. The picture
-/// may be `doubt` levels from what it means.
-pub(in crate::fit) fn paleness(picture: &Image, doubt: f32) -> f64 {
-    let Some(paper) = background::paper(picture) else {
-        return 0.0;
-    };
+/// How much more quality a drawing on paper needs, dB, because its contrast is less than usual; `None` of what is no such drawing. The
+/// picture may be `doubt` levels from what it means.
+pub(in crate::fit) fn paleness(picture: &Image, doubt: f32) -> Option<f64> {
+    let paper = background::paper(picture)?;
     let least = PAPER + PAPER_OF_DOUBT * f64::from(doubt);
     // The RMS distance from the paper, weighted by its square: edges and thin lines have a part of their ink's contrast, and count little.
     let [mut sum, mut squares] = [0.0; 2];
@@ -37,10 +35,10 @@ pub(in crate::fit) fn paleness(picture: &Image, doubt: f32) -> f64 {
         }
     }
     if drawn == 0 || drawn as f64 > MOST_DRAWN * count as f64 {
-        return 0.0;
+        return None;
     }
     let contrast = (squares / sum).sqrt();
-    (20.0 * math::log10(USUAL / contrast)).clamp(0.0, MOST_DB)
+    Some((20.0 * math::log10(USUAL / contrast)).clamp(0.0, MOST_DB))
 }
 
 #[cfg(test)]
@@ -60,20 +58,20 @@ mod tests {
     #[test]
     fn half_the_contrast_needs_six_decibels() {
         let db = |levels, share| paleness(&bar(levels, share), 0.0);
-        let half = db(0.5 * USUAL as f32, 0.1);
+        let half = db(0.5 * USUAL as f32, 0.1).unwrap();
         assert!((half - 6.02).abs() < 0.05, "{half}");
-        assert_eq!(db(150.0, 0.1), 0.0);
-        assert_eq!(db(8.0, 0.1), 0.0, "nothing but paper");
-        assert_eq!(db(20.0, 0.1), MOST_DB);
+        assert_eq!(db(150.0, 0.1), Some(0.0));
+        assert_eq!(db(8.0, 0.1), None, "nothing but paper");
+        assert_eq!(db(20.0, 0.1), Some(MOST_DB));
     }
 
     #[test]
-    fn what_has_no_paper_is_not_pale() {
+    fn what_has_no_paper_is_no_drawing() {
         let picture = Image::from_fn(64, 64, 3, |x, y, _| {
             0.4 + (x * 7 + y * 13) as f32 % 64.0 / 400.0
         });
-        assert_eq!(paleness(&picture.unwrap(), 0.0), 0.0);
+        assert_eq!(paleness(&picture.unwrap(), 0.0), None);
         let clear = bar(50.0, 0.1).with_alpha(vec![0.5; 10_000]).unwrap();
-        assert_eq!(paleness(&clear, 0.0), 0.0);
+        assert_eq!(paleness(&clear, 0.0), None);
     }
 }

@@ -101,6 +101,15 @@ impl Price {
         (self.per_byte > 0.0).then(|| error + f64::from(self.of_bytes(bytes)))
     }
 
+    /// The price at a quality that is higher by `db`.
+    pub(in crate::fit) fn eased(self, db: f64) -> Self {
+        Self {
+            per_byte: self.per_byte * mse(db) as f32,
+            wanted_mse: self.wanted_mse * mse(db),
+            ..self
+        }
+    }
+
     /// The price with bytes of areas as dear as others, to choose between areas and strokes.
     pub(in crate::fit) fn of_bytes_alone(self) -> Self {
         Self {

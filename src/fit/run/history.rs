@@ -20,6 +20,8 @@ pub(in crate::fit) struct History {
     pub(in crate::fit) traced: [usize; 2],
     /// The pixels near details that the polish lost, row by row; errors count more there since then.
     pub(in crate::fit) lost: Vec<u32>,
+    /// By how much the price was lowered, dB, because the polished drawing was below the floor.
+    pub(in crate::fit) eased_db: f64,
     /// The current stage, or the last one.
     pub(in crate::fit) stage: Option<OpenStage>,
     /// Reason that ended the stages, and in the end the fit.
@@ -70,6 +72,7 @@ impl History {
             records,
             traced: [0; 2],
             lost: Vec::new(),
+            eased_db: 0.0,
             stage: None,
             stop,
             corrections: Corrections {

@@ -199,6 +199,12 @@ impl<'a> Session<'a> {
         self.drawing.focus_on(self.weights.as_ref());
     }
 
+    /// Lowers the price by `db`, for all that follows.
+    pub(in crate::fit) fn ease(&mut self, db: f64) {
+        self.history.eased_db = db;
+        self.price = self.price.eased(db);
+    }
+
     /// Plans the stages for the strokes that are missing.
     pub(in crate::fit) fn plan_rest(&mut self) {
         let [layers, strokes] = self.history.traced;
@@ -406,6 +412,7 @@ impl<'a> Session<'a> {
                 if !self.history.lost.is_empty() {
                     self.weigh_lost();
                 }
+                self.ease(self.history.eased_db);
                 self.drawing.restore(drawing);
                 self.progress.position = position;
                 self.plan_rest();
