@@ -226,11 +226,6 @@ impl Band {
         })
     }
 
-    /// The index of a pixel.
-    pub(super) fn index_of(&self, at: [i32; 2]) -> Option<usize> {
-        self.index(at).map(|(index, _)| index)
-    }
-
     /// The index of a pixel, and that of the end of its run.
     fn index(&self, [x, y]: [i32; 2]) -> Option<(usize, usize)> {
         let row = usize::try_from(y - self.top)

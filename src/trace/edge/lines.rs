@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::FRAC_PI_4;
 
 use super::super::contour::Field;
-use super::coverage::{Band, Coverage};
+use super::coverage::Coverage;
 use super::curve::Ring;
 use super::describe::{self, PRICE, Sample, corner};
 use super::edits;
@@ -64,28 +64,28 @@ pub(super) fn lines(
     if described.iter().any(Vec::is_empty) {
         return None;
     }
-    let mut lines: Vec<Line> = described.iter().map(|rivals| rivals[0].clone()).collect();
+    let first = described.iter().map(|rivals| rivals[0].clone());
+    let mut drawn = Drawn::new(shares, first);
     // 2. On the pixels that no other one touches: the nearest of each, then better ones.
-    for i in 0..lines.len() {
-        let target = target(shares, &lines, i);
-        let settled = described[i].iter().map(|line| settled(line, &target));
+    for (i, rivals) in described.iter().enumerate() {
+        let target = drawn.target(&rivals[0], &[i]);
+        let settled = rivals.iter().map(|line| settled(line, &target));
         if let Some((_, best)) = settled.min_by(|a, b| a.0.total_cmp(&b.0)) {
-            lines[i] = best;
+            drawn.change(&[i], Some(best));
         }
     }
-    if shares.length_of_lines(&lines) > HOPELESS[0] * most + HOPELESS[1] {
+    if drawn.length > HOPELESS[0] * most + HOPELESS[1] {
         return None;
     }
     for _ in 0..ROUNDS {
-        for i in 0..lines.len() {
-            lines[i] = improved(&lines[i], &target(shares, &lines, i)).1;
-        }
+        drawn.each(|line, target| improved(line, target).1);
     }
-    if shares.length_of_lines(&lines) > LOST * most {
+    if drawn.length > LOST * most {
         return None;
     }
     // 3. Those that are one.
-    Some(joined(shares, lines))
+    let length = join(&mut drawn);
+    Some((drawn.into_lines(), length))
 }
 
 /// Lines that are so many times as long as a rival description, and so many nats besides, before any edit do not become shorter than that.
@@ -96,11 +96,165 @@ const LOST: f64 = 3.0;
 /// What has widths that no line has by as many nats, and more than [`LOST`], is none. Of lines in 63 clip arts, the most is 400.
 const WIDE: f64 = 600.0;
 
-/// Refines lines as they are.
-pub(super) fn settle(shares: &Shares<'_>, lines: &mut [Line]) {
-    for i in 0..lines.len() {
-        lines[i] = settled(&lines[i], &target(shares, lines, i)).1;
+/// Lines that are refined as they are.
+pub(super) fn settle(shares: &Shares<'_>, lines: Vec<Line>) -> Vec<Line> {
+    let mut drawn = Drawn::new(shares, lines);
+    drawn.each(|line, target| settled(line, target).1);
+    drawn.into_lines()
+}
+
+/// Lines of a page, and the length of its description by them. What a line covers is found once, so that a change costs what it touches.
+struct Drawn<'a> {
+    shares: &'a Shares<'a>,
+    /// `None` where a line is gone.
+    lines: Vec<Option<Line>>,
+    /// For each pixel of the page, the lines that cover some of it, and how much each does.
+    covers: Vec<Vec<(usize, f64)>>,
+    /// Where a line is and how wide does not count.
+    length: f64,
+}
+
+impl<'a> Drawn<'a> {
+    fn new(shares: &'a Shares<'a>, lines: impl IntoIterator<Item = Line>) -> Self {
+        let mut drawn = Self {
+            shares,
+            lines: Vec::new(),
+            covers: vec![Vec::new(); shares.values.len()],
+            length: 0.0,
+        };
+        let pixels = 0..shares.values.len();
+        drawn.length = pixels.map(|i| drawn.half_square(i, &[], 0.0)).sum();
+        for (i, line) in lines.into_iter().enumerate() {
+            drawn.lines.push(None);
+            drawn.change(&[i], Some(line));
+        }
+        drawn
     }
+
+    fn into_lines(self) -> Vec<Line> {
+        self.lines.into_iter().flatten().collect()
+    }
+
+    /// The lines that are there.
+    fn present(&self) -> impl Iterator<Item = usize> {
+        (0..self.lines.len()).filter(|&i| self.lines[i].is_some())
+    }
+
+    /// Gives each line the place of what `work` makes of it and of what is left for it.
+    fn each(&mut self, work: impl Fn(&Line, &Target) -> Line) {
+        for i in 0..self.lines.len() {
+            if let Some(line) = &self.lines[i] {
+                let line = work(line, &self.target(line, &[i]));
+                self.change(&[i], Some(line));
+            }
+        }
+    }
+
+    /// The pixels that a line covers, and how much of each.
+    fn covered(&self, line: &Line) -> Vec<(usize, f64)> {
+        let mut covered = Vec::new();
+        self.shares.covered(&Ring::Line(line.clone()), |i, share| {
+            if share > 0.0 {
+                covered.push((i, share));
+            }
+        });
+        covered
+    }
+
+    /// Half the squared error of a pixel without the lines `gone`, and with a new one that covers `share` of it.
+    fn half_square(&self, i: usize, gone: &[usize], share: f64) -> f64 {
+        let [mut least, mut most] = [share; 2];
+        for (line, share) in &self.covers[i] {
+            if !gone.contains(line) {
+                (least, most) = (share.max(least), share + most);
+            }
+        }
+        let shares = self.shares;
+        let away = shares.outside(shares.values[i], [least, most.min(1.0)], shares.doubts[i]);
+        0.5 * (away * away).min(describe::CAP)
+    }
+
+    /// By how much the description becomes longer with a line in the place of those that are `gone`, or without these.
+    fn growth(&self, gone: &[usize], line: Option<&Line>) -> f64 {
+        let mut touched = line.map_or_else(Vec::new, |line| self.covered(line));
+        let mut numbers = line.map_or(0.0, numbers);
+        for line in gone.iter().filter_map(|&i| self.lines[i].as_ref()) {
+            let uncovered = self.covered(line).into_iter().map(|(i, _)| (i, 0.0));
+            touched.extend(uncovered);
+            numbers -= self::numbers(line);
+        }
+        // A pixel of both counts once, with its new share, which comes first.
+        touched.sort_by_key(|(i, _)| *i);
+        touched.dedup_by_key(|(i, _)| *i);
+        let growth = touched.into_iter().map(|(i, share)| {
+            let after = self.half_square(i, gone, share);
+            after - self.half_square(i, &[], 0.0)
+        });
+        growth.sum::<f64>() + PRICE * numbers
+    }
+
+    /// Puts a line in the place of the first of those that are `gone`, or none. Returns the lines that share pixels with these.
+    fn change(&mut self, gone: &[usize], line: Option<Line>) -> BTreeSet<usize> {
+        self.length += self.growth(gone, line.as_ref());
+        let mut beside = BTreeSet::new();
+        for &i in gone {
+            let Some(line) = self.lines[i].take() else {
+                continue;
+            };
+            for (pixel, _) in self.covered(&line) {
+                self.covers[pixel].retain(|(line, _)| *line != i);
+                beside.extend(self.covers[pixel].iter().map(|(line, _)| *line));
+            }
+        }
+        if let Some(line) = &line {
+            for (pixel, share) in self.covered(line) {
+                beside.extend(self.covers[pixel].iter().map(|(line, _)| *line));
+                self.covers[pixel].push((gone[0], share));
+            }
+        }
+        self.lines[gone[0]] = line;
+        beside.extend(gone);
+        beside
+    }
+
+    /// What a line is to cover in the place of those that are `gone`, beside the others.
+    fn target(&self, own: &Line, gone: &[usize]) -> Target {
+        // Ends and corners may be some way off: bands of 6 px side by side, as wide as the line on each side.
+        let count = (own.radius / 6.0).ceil() as i32 + 1;
+        let wide = (-count..=count).filter_map(|k| {
+            let radius = own.radius + 6.0 * f64::from(k);
+            (k != 0 && radius > 0.0).then(|| {
+                Ring::Line(Line {
+                    radius,
+                    ..own.clone()
+                })
+            })
+        });
+        let wide: Vec<Ring> = wide.collect();
+        let wide: Vec<&Ring> = wide.iter().collect();
+        let page = self.shares.page;
+        let mut target = self
+            .shares
+            .target(whole(&Ring::Line(own.clone()), &wide, page));
+        let pixels: Vec<usize> = target.band.places().map(|at| page.index(at)).collect();
+        for (k, pixel) in pixels.into_iter().enumerate() {
+            let others = self.covers[pixel].iter();
+            for (_, share) in others.filter(|(line, _)| !gone.contains(line)) {
+                // Of a pixel, the others may cover what this one does, or the rest: what is left for it lies in between.
+                target.shares[k] -= 0.5 * share;
+                target.slacks[k] += 0.5 * share;
+                if *share > COVERED {
+                    target.weights[k] = 0.0;
+                }
+            }
+        }
+        target
+    }
+}
+
+/// The numbers of a line that count.
+fn numbers(line: &Line) -> f64 {
+    line.freedom() as f64 - FREE[1]
 }
 
 /// The line near this one for which the description is shortest, and the length of that. What cannot become shorter than `most` is given
@@ -131,95 +285,71 @@ fn settled(line: &Line, target: &Target) -> (f64, Line) {
 /// A share above which nothing else in a pixel is seen.
 const COVERED: f64 = 0.98;
 
-/// What line `i` of several is to cover beside the others.
-fn target(shares: &Shares<'_>, lines: &[Line], i: usize) -> Target {
-    // Ends and corners may be some way off: bands of 6 px side by side, as wide as the line on each side.
-    let own = &lines[i];
-    let count = (own.radius / 6.0).ceil() as i32 + 1;
-    let wide = (-count..=count).filter_map(|k| {
-        let radius = own.radius + 6.0 * f64::from(k);
-        (k != 0 && radius > 0.0).then(|| {
-            Ring::Line(Line {
-                radius,
-                ..own.clone()
-            })
-        })
-    });
-    let wide: Vec<Ring> = wide.collect();
-    let wide: Vec<&Ring> = wide.iter().collect();
-    let mut target = shares.target(whole(&Ring::Line(own.clone()), &wide, shares.page));
-    for (_, other) in lines.iter().enumerate().filter(|&(k, _)| k != i) {
-        let other = Ring::Line(other.clone());
-        let band = Band::around(&other, shares.page);
-        let covered = Coverage::of(&other, &band).shares();
-        for (at, share) in band.places().zip(covered) {
-            // Of a pixel, the others may cover what this one does, or the rest: what is left for it lies in between.
-            let share = share.max(0.0);
-            if let Some(k) = target.band.index_of(at) {
-                target.shares[k] -= 0.5 * share;
-                target.slacks[k] += 0.5 * share;
-                if share > COVERED {
-                    target.weights[k] = 0.0;
-                }
+/// Takes away lines that do not pay, and joins those whose ends are near each other where that is shorter. Returns the least length of the
+/// description on the way.
+fn join(drawn: &mut Drawn<'_>) -> f64 {
+    // Where a line is and how wide counts here, so that fewer lines are shorter. Lines that win beside outlines as several do so as one.
+    let place = PRICE * FREE[1];
+    let mut least = drawn.length;
+    let count = drawn.lines.len();
+    // What was tried with the lines as they are: each pair and, of one line, its ends; and to do without it.
+    let mut is_tried = vec![false; count * count];
+    let mut is_needed = vec![false; count];
+    while let Some((gone, line)) = shorter(drawn, place, &mut is_tried, &mut is_needed) {
+        let beside = drawn.change(&gone, line);
+        least = least.min(drawn.length);
+        for i in beside {
+            is_needed[i] = false;
+            for k in 0..count {
+                (is_tried[i * count + k], is_tried[k * count + i]) = (false, false);
             }
         }
     }
-    target
+    least
 }
 
-/// Lines without those that do not pay, of which those are one whose ends are near each other, where that is shorter, and the length
-/// of their description.
-fn joined(shares: &Shares<'_>, mut lines: Vec<Line>) -> (Vec<Line>, f64) {
-    // Where a line is and how wide counts here, so that fewer lines are shorter. Lines that win beside outlines as several do so as one.
-    let length_of = |lines: &[Line]| {
-        let beside = shares.length_of_lines(lines);
-        let places = lines.len() as f64 * FREE[1];
-        (beside + PRICE * places, beside)
-    };
-    let (mut length, mut least) = length_of(&lines);
-    let mut pairs: Vec<[usize; 2]> = Vec::new();
-    'all: loop {
-        for i in 0..lines.len() {
-            let mut fewer = lines.clone();
-            fewer.remove(i);
-            let (shorter, beside) = length_of(&fewer);
-            if !fewer.is_empty() && shorter < length {
-                (lines, length, least) = (fewer, shorter, least.min(beside));
-                pairs.clear();
-                continue 'all;
+/// The first lines that are better gone, or as one, at so much for the `place` of a line.
+fn shorter(
+    drawn: &Drawn<'_>,
+    place: f64,
+    is_tried: &mut [bool],
+    is_needed: &mut [bool],
+) -> Option<(Vec<usize>, Option<Line>)> {
+    let count = drawn.lines.len();
+    let present: Vec<usize> = drawn.present().collect();
+    for (from, &i) in present.iter().enumerate() {
+        if present.len() > 1 && !is_needed[i] {
+            if drawn.growth(&[i], None) < place {
+                return Some((vec![i], None));
             }
-            for k in i..lines.len() {
-                if pairs.contains(&[i, k]) {
+            is_needed[i] = true;
+        }
+        for &k in &present[from..] {
+            if std::mem::replace(&mut is_tried[i * count + k], true) {
+                continue;
+            }
+            let [Some(own), Some(other)] = [i, k].map(|i| drawn.lines[i].as_ref()) else {
+                continue;
+            };
+            let (joined, gone, saved) = match k == i {
+                true => (own.closed().into_iter().collect(), vec![i], 0.0),
+                false => (own.joined_with(other), vec![i, k], place),
+            };
+            for line in joined {
+                let target = drawn.target(&line, &gone);
+                let line = settled(&line, &target).1;
+                if drawn.growth(&gone, Some(&line)) > saved + JOINED * PRICE {
                     continue;
                 }
-                let joined = match k == i {
-                    true => lines[i].closed().into_iter().collect(),
-                    false => lines[i].joined_with(&lines[k]),
-                };
-                for line in joined {
-                    let mut fewer = lines.clone();
-                    if k > i {
-                        fewer.remove(k);
-                    }
-                    fewer[i] = line;
-                    let target = target(shares, &fewer, i);
-                    fewer[i] = settled(&fewer[i], &target).1;
-                    if length_of(&fewer).0 > length + JOINED * PRICE {
-                        continue;
-                    }
-                    fewer[i] = improved(&fewer[i], &target).1;
-                    let (shorter, beside) = length_of(&fewer);
-                    if shorter < length {
-                        (lines, length, least) = (fewer, shorter, least.min(beside));
-                        pairs.clear();
-                        continue 'all;
-                    }
+                let line = improved(&line, &target).1;
+                if drawn.growth(&gone, Some(&line)) < saved {
+                    is_tried[i * count + k] = false;
+                    return Some((gone, Some(line)));
                 }
-                pairs.push([i, k]);
             }
         }
-        return (lines, least);
     }
+    None
 }
 
 /// Lines that are joined may be longer by so many prices of a number before any edit. A guess.
@@ -627,7 +757,7 @@ impl Profile {
 
 #[cfg(test)]
 mod tests {
-    use super::super::coverage::Page;
+    use super::super::coverage::{Band, Page};
     use super::super::describe::tests::knot;
     use super::*;
 

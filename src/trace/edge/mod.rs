@@ -214,10 +214,10 @@ pub(super) fn lines(
     rings.iter().for_each(|ring| shares.add(ring, 1.0));
     shares.factor = factor(misfits);
     let by_rings = shares.length_of(rings);
-    let (mut lines, by_lines) = lines::lines(field, &shares, middles, by_rings)?;
+    let (lines, by_lines) = lines::lines(field, &shares, middles, by_rings)?;
     let lengths = [by_lines, by_rings];
     shares.slack = 0.0;
-    lines::settle(&shares, &mut lines);
+    let lines = lines::settle(&shares, lines);
     shares.slack = BIASES[1];
     shares.factor = 1.0;
     let deviation = factor(shares.misfits_of_lines(&lines)) * doubt_of_edges(field, doubts);
@@ -311,15 +311,6 @@ impl Shares<'_> {
         }
         let covered = covered.iter().map(|&share: &f64| [share.min(1.0); 2]);
         self.half_chi2(covered) + PRICE * freedom
-    }
-
-    /// The length of the description of the whole page by lines, which may lie on one another.
-    fn length_of_lines(&self, lines: &[Line]) -> f64 {
-        let freedom: f64 = lines
-            .iter()
-            .map(|line| line.freedom() as f64 - FREE[1])
-            .sum();
-        self.half_chi2(self.covered_by(lines).into_iter()) + PRICE * freedom
     }
 
     /// The least and the largest share of each pixel that lines cover: edges of lines that meet in a pixel may cover the same part of it
