@@ -69,8 +69,7 @@ fn changes(svg: &str, ranges: Vec<Range<usize>>, size: Size) -> Result<Option<Ve
     }
     let whole = drawn(svg, size)?;
     let change = |range| {
-        let mut text = svg.to_owned();
-        text.replace_range(range, "");
+        let text = without(svg, &[range]);
         let pairs = whole.iter().zip(drawn(&text, size)?);
         let apart = |(a, b): (&[f32; 4], [f32; 4])| {
             let channels = a.iter().zip(b);
@@ -80,6 +79,20 @@ fn changes(svg: &str, ranges: Vec<Range<usize>>, size: Size) -> Result<Option<Ve
     };
     let changes: Result<Vec<Vec<f32>>> = ranges.into_iter().map(change).collect();
     changes.map(Some)
+}
+
+/// The text without the elements in some of its ranges, which are in order.
+pub(super) fn without(svg: &str, ranges: &[Range<usize>]) -> String {
+    let mut text = svg.to_owned();
+    // An element within another one is gone with it.
+    let mut from = text.len() + 1;
+    for range in ranges.iter().rev() {
+        if range.end <= from {
+            text.replace_range(range.clone(), "");
+            from = range.start;
+        }
+    }
+    text
 }
 
 /// Colour, multiplied by alpha, and alpha of each pixel.

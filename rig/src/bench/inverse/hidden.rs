@@ -4,10 +4,8 @@
 //! seen, and the rest of its reach is hidden. An element of the file and one of the artist's are the same thing if what is
 //! seen of them overlaps the most.
 
-use std::ops::Range;
-
 use super::anatomy::elements;
-use super::belonging::{CHANGED, MOST, drawn};
+use super::belonging::{CHANGED, MOST, drawn, without};
 use crate::report::cases::Hidden;
 use strokefit::Result;
 use strokefit::verify::Size;
@@ -33,21 +31,19 @@ pub(super) struct Reaches {
 }
 
 impl Reaches {
-    /// The reaches of the elements of SVG text in a picture of so many px; none if there are too many.
+    /// The reaches of the elements of SVG text in a picture of so many px; `None` if there are too many.
+    ///
+    /// They take two renders for each element.
     ///
     /// # Errors
     /// As [`verify::render`](strokefit::verify::render).
-    pub(super) fn of(svg: &str, size: Size) -> Result<Self> {
+    pub(super) fn of(svg: &str, size: Size) -> Result<Option<Self>> {
         let ranges = elements(svg)?;
+        if ranges.len() > MOST {
+            return Ok(None);
+        }
         let whole = drawn(svg, size)?;
         let pixels = whole.len();
-        if ranges.len() > MOST {
-            return Ok(Self {
-                size,
-                pixels,
-                list: Vec::new(),
-            });
-        }
         let mut list = Vec::new();
         let mut below = drawn(&without(svg, &ranges), size)?;
         for (i, range) in ranges.iter().enumerate() {
@@ -64,10 +60,10 @@ impl Reaches {
             list.push(reach);
             below = on_top;
         }
-        Ok(Self { size, pixels, list })
+        Ok(Some(Self { size, pixels, list }))
     }
 
-    /// What is hidden in other SVG text beside what is hidden here; `None` if that is too little.
+    /// What is hidden in other SVG text beside what is hidden here; `None` if that is too little, or the text has too many elements.
     ///
     /// # Errors
     /// As [`Reaches::of`].
@@ -81,7 +77,9 @@ impl Reaches {
         if own.peek().is_none() {
             return Ok(None);
         }
-        let others = Self::of(svg, self.size)?;
+        let Some(others) = Self::of(svg, self.size)? else {
+            return Ok(None);
+        };
         let none = Reach::default();
         let mut sum = Hidden::default();
         for reach in own {
@@ -104,20 +102,6 @@ impl Reaches {
         }
         Ok(Some(sum))
     }
-}
-
-/// The text without the elements in some of its ranges, which are in order.
-fn without(svg: &str, ranges: &[Range<usize>]) -> String {
-    let mut text = svg.to_owned();
-    // An element within another one is gone with it.
-    let mut from = text.len() + 1;
-    for range in ranges.iter().rev() {
-        if range.end <= from {
-            text.replace_range(range.clone(), "");
-            from = range.start;
-        }
-    }
-    text
 }
 
 fn is_changed(a: &[f32; 4], b: &[f32; 4]) -> bool {
@@ -145,7 +129,7 @@ mod tests {
     const ARTIST: &str = r##"<circle cx="16" cy="16" r="8" fill="#d00"/><rect x="16" y="4" width="12" height="24" fill="#00d"/>"##;
 
     fn hidden(found: &str) -> Hidden {
-        let artist = Reaches::of(&svg(ARTIST), SIZE).unwrap();
+        let artist = Reaches::of(&svg(ARTIST), SIZE).unwrap().unwrap();
         artist.hidden(&svg(found)).unwrap().unwrap()
     }
 
@@ -165,7 +149,15 @@ mod tests {
     #[test]
     fn what_hides_nothing_has_no_measure() {
         let apart = r##"<circle cx="8" cy="8" r="6" fill="#d00"/><circle cx="24" cy="24" r="6" fill="#00d"/>"##;
-        let apart = Reaches::of(&svg(apart), SIZE).unwrap();
+        let apart = Reaches::of(&svg(apart), SIZE).unwrap().unwrap();
         assert_eq!(apart.hidden(&svg(ARTIST)).unwrap(), None);
+    }
+
+    #[test]
+    fn what_has_too_many_elements_is_not_judged() {
+        let many = ARTIST.repeat(MOST / 2 + 1);
+        assert!(Reaches::of(&svg(&many), SIZE).unwrap().is_none());
+        let artist = Reaches::of(&svg(ARTIST), SIZE).unwrap().unwrap();
+        assert_eq!(artist.hidden(&svg(&many)).unwrap(), None);
     }
 }

@@ -119,7 +119,8 @@ struct Artist {
     db: f64,
     areas: Areas,
     things: Things,
-    reaches: Reaches,
+    /// `None` if there are too many elements.
+    reaches: Option<Reaches>,
 }
 
 impl Truth {
@@ -367,7 +368,10 @@ impl<'a> Case<'a> {
             delta_e: Some(delta_e(&artist.large, svg)?),
             displacement_px: artist.areas.displacement_px(svg)?,
             belonging: artist.things.belonging(svg)?,
-            hidden: artist.reaches.hidden(svg)?,
+            hidden: match &artist.reaches {
+                Some(reaches) => reaches.hidden(svg)?,
+                None => None,
+            },
             mean_px: apart.map(|apart| apart.mean),
             largest_px: apart.map(|apart| apart.largest),
             ..entry
