@@ -23,7 +23,7 @@ const LEAST_DB: f64 = 0.3;
 /// Most decibels by which the price falls. Paintings and photographs have up to four times the bytes then.
 const MOST_DB: f64 = 5.5;
 
-/// Lowers the price and seeds the next stage if the polished drawing is below the floor.
+/// Lowers the price and seeds the next stage if the polished drawing, whose quality nobody has set, is below the floor.
 pub(super) fn reach_floor(session: &mut Session<'_>) -> Result<Outcome> {
     if !has_floor(session) {
         return Ok(Outcome::Over);
@@ -44,11 +44,10 @@ pub(super) fn reach_floor(session: &mut Session<'_>) -> Result<Outcome> {
     grow::next_stage(session)
 }
 
-/// True if nobody has said how good or how long the drawing is to be, it has no floor behind it, and more strokes can make it better.
+/// True if nobody has said how long the fit may take or which colours there are, the drawing has no floor behind it, and more strokes can make it better.
 fn has_floor(session: &Session<'_>) -> bool {
     let config = session.config;
     session.task.base.is_none()
-        && config.is_open()
         && config.budget.time.is_none()
         && config.preset != Preset::Draft
         && config.colors == Colors::Free

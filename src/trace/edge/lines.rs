@@ -103,7 +103,7 @@ pub(super) fn settle(shares: &Shares<'_>, lines: Vec<Line>) -> Vec<Line> {
     drawn.into_lines()
 }
 
-/// Lines of a page, and the length of its description by them. What a line covers is found once, so that a change costs what it touches.
+/// Lines of a page, and the length of its description by them. Who covers each pixel is kept, so that a change costs what it touches.
 struct Drawn<'a> {
     shares: &'a Shares<'a>,
     /// `None` where a line is gone.
@@ -169,9 +169,7 @@ impl<'a> Drawn<'a> {
                 (least, most) = (share.max(least), share + most);
             }
         }
-        let shares = self.shares;
-        let away = shares.outside(shares.values[i], [least, most.min(1.0)], shares.doubts[i]);
-        0.5 * (away * away).min(describe::CAP)
+        self.shares.half_square(i, [least, most.min(1.0)])
     }
 
     /// By how much the description becomes longer with a line in the place of those that are `gone`, or without these.
@@ -343,7 +341,6 @@ fn shorter(
                 }
                 let line = improved(&line, &target).1;
                 if drawn.growth(&gone, Some(&line)) < saved {
-                    is_tried[i * count + k] = false;
                     return Some((gone, Some(line)));
                 }
             }

@@ -328,12 +328,16 @@ impl Shares<'_> {
 
     /// Half of χ² of the whole page, if each pixel is covered by a share between these two.
     fn half_chi2(&self, covered: impl Iterator<Item = [f64; 2]>) -> f64 {
-        let pixels = covered.zip(&self.values).zip(self.doubts);
-        let squares = pixels.map(|((covered, value), doubt)| {
-            let away = self.outside(*value, covered, *doubt);
-            (away * away).min(describe::CAP)
-        });
-        0.5 * squares.sum::<f64>()
+        let pixels = covered.enumerate();
+        pixels
+            .map(|(i, covered)| self.half_square(i, covered))
+            .sum()
+    }
+
+    /// Half the squared error of a pixel of which so much is covered.
+    fn half_square(&self, i: usize, covered: [f64; 2]) -> f64 {
+        let away = self.outside(self.values[i], covered, self.doubts[i]);
+        0.5 * (away * away).min(describe::CAP)
     }
 
     /// The errors of the pixels that edges of lines touch, or should, in units of their deviations.
