@@ -104,12 +104,12 @@ pub fn fidelity(svg: &str, target: &Image) -> Result<Quality> {
     Quality::between(target, &render_like(svg, target, WHITE)?)
 }
 
-/// Judges SVG text: faithful to `target`, and drawn as in `soft`, our own render of it?
+/// Judges SVG text on `matte`: faithful to `target`, and drawn as in `soft`, our own render of it?
 ///
 /// # Errors
 /// As [`fidelity`]; also [`ErrorKind::Picture`] when `soft` and `target` differ in size.
-pub fn verify(svg: &str, target: &Image, soft: &Image) -> Result<Verdict> {
-    let drawn = render_like(svg, target, WHITE)?;
+pub fn verify(svg: &str, target: &Image, soft: &Image, matte: Rgb) -> Result<Verdict> {
+    let drawn = render_like(svg, target, matte)?;
     Ok(Verdict {
         fidelity: Quality::between(target, &drawn)?,
         agreement: Agreement::between(soft, &drawn)?,

@@ -215,7 +215,7 @@ pub enum Background {
     /// Chosen from the picture; a picture with alpha gets none.
     #[default]
     Auto,
-    /// No background. A drawing of a picture without alpha is fitted on white.
+    /// No background. The paper of a picture without alpha is not drawn, whatever its colour; one without paper is fitted on white.
     None,
     /// This colour.
     Color(Rgb),

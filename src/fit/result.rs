@@ -9,7 +9,7 @@ use super::drawing::focus::Focus;
 use crate::image::Image;
 use crate::metrics::null_is_infinite;
 use crate::restore::Damage;
-use crate::scene::{Dropped, Scene};
+use crate::scene::{Dropped, Rgb, Scene};
 use crate::svg::WriteOptions;
 
 /// A finished drawing and how it came to be.
@@ -25,6 +25,9 @@ pub struct Fit {
     pub file: WriteOptions,
     /// The target: the picture with its alpha, or flattened onto the background.
     pub target: Image,
+    /// What the file lies on when it is compared with the target: where the picture is opaque and the file has no background, the
+    /// colour of the picture's paper.
+    pub matte: Rgb,
     /// Damage of the picture, if some was recognised: the drawing is then of the restored picture.
     pub damage: Option<Damage>,
     /// The picture that was drawn, if that is not the target: without its damage.

@@ -50,10 +50,10 @@ impl Judged {
     pub fn new(fit: Fit) -> Result<Self> {
         let svg = fit.svg();
         let mut soft = Quality::between(&fit.target, &fit.soft)?;
-        let mut verdict = verify::verify(&svg, &fit.target, &fit.soft)?;
+        let mut verdict = verify::verify(&svg, &fit.target, &fit.soft, fit.matte)?;
         // Noise and paper that were left out are no details.
         if let Some(meant) = &fit.meant {
-            let drawn = verify::render_like(&svg, meant, [1.0; 3])?;
+            let drawn = verify::render_like(&svg, meant, fit.matte)?;
             soft.details_kept = metrics::details_kept(meant, &fit.soft)?;
             verdict.fidelity.details_kept = metrics::details_kept(meant, &drawn)?;
         }
@@ -96,7 +96,7 @@ impl Judged {
 }
 
 fn on_focus(focus: &Focus, svg: &str, fit: &Fit) -> Result<OnFocus> {
-    let drawn = verify::render_like(svg, &fit.target, [1.0; 3])?;
+    let drawn = verify::render_like(svg, &fit.target, fit.matte)?;
     let [inside_db, outside_db] = focus.psnrs_db(&fit.target, &drawn)?;
     Ok(OnFocus {
         inside_db,

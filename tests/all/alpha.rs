@@ -28,7 +28,7 @@ fn pictures_look_right_on_every_matte() {
         for db in [seen.black_db, seen.white_db, seen.magenta_db] {
             assert!(db > min_db, "{name}: {seen:?}");
         }
-        let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
+        let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft, fit.matte).unwrap();
         assert!(verdict.agreement.psnr_db > 36.0, "{name}: {verdict:?}");
         assert_eq!(verdict.fidelity.psnr_db, seen.white_db, "{name}");
         // No background is drawn; its element begins with the width, that of a shape with the place.

@@ -20,7 +20,7 @@ use strokefit::verify::{self, Verdict};
 const AGREEMENT_DB: f64 = 36.0;
 
 fn verdict(fit: &Fit) -> Verdict {
-    verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap()
+    verify::verify(&fit.svg(), &fit.target, &fit.soft, fit.matte).unwrap()
 }
 
 /// A smooth ramp with a dark disc.

@@ -26,6 +26,40 @@ fn has_gradient(scene: &Scene) -> bool {
     scene.ground.iter().any(|area| area.shade.is_some())
 }
 
+/// A ring, a frame and a line in one colour on paper of another.
+fn logo(paper: &str, ink: &str) -> Image {
+    on_white(&format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="150" height="100"><rect width="150" height="100" fill="{paper}"/><g fill="none" stroke="{ink}" stroke-width="8"><circle cx="50" cy="44" r="26"/><rect x="86" y="20" width="50" height="44" rx="9"/><path d="M14 86L136 82"/></g></svg>"##
+    ))
+}
+
+#[test]
+fn paper_of_any_colour_is_left_out() {
+    let config = Config {
+        background: Background::None,
+        ..Config::default()
+    };
+    for (paper, ink) in [
+        ("#fff", "#223"),
+        ("#101830", "#e8ecf8"),
+        ("#f4e8d0", "#3c281e"),
+        ("#b0283c", "#fff"),
+    ] {
+        let fit = drawn(&logo(paper, ink), &config);
+        assert_eq!(
+            (fit.scene.background, fit.scene.len()),
+            (None, 3),
+            "{paper}"
+        );
+        let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft, fit.matte).unwrap();
+        let db = verdict.fidelity.psnr_db;
+        assert!(verdict.agrees() && db > 38.0, "{paper}: {verdict:?}");
+        let seen = verify::render(&fit.svg(), verify::Size::Scale(1.0), None).unwrap();
+        let covered = seen.alpha().unwrap().iter().sum::<f32>() / 15_000.0;
+        assert!((0.2..0.3).contains(&covered), "{paper}: {covered}");
+    }
+}
+
 /// The blur of a dark shape, and what casts it.
 const CARD: &str = r##"<rect x="30" y="34" width="110" height="60" rx="9" fill="#102040" fill-opacity="0.45" filter="url(#f)"/>
 <rect x="30" y="28" width="110" height="60" rx="9" fill="#fdfdfd"/><circle cx="60" cy="58" r="14" fill="#e05020"/>"##;
@@ -49,7 +83,7 @@ fn picture(page: Option<&str>, blur: f32, elements: &str) -> Image {
 
 fn judged(picture: &Image, config: &Config) -> (Scene, Quality) {
     let fit = drawn(picture, config);
-    let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
+    let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft, fit.matte).unwrap();
     assert!(verdict.agreement.psnr_db > 38.0, "{verdict:?}");
     assert_eq!(svg::read(&fit.svg()).unwrap(), fit.scene);
     assert_eq!(svg::lint(&fit.svg()), []);
@@ -78,7 +112,7 @@ fn strokes_are_drawn_on_a_gradient() {
     let fit = drawn(&sign(), &draft(20));
     assert!(has_gradient(&fit.scene) && fit.scene.background.is_none());
     assert!(!fit.scene.is_empty());
-    let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft).unwrap();
+    let verdict = verify::verify(&fit.svg(), &fit.target, &fit.soft, fit.matte).unwrap();
     let [seen, agreement] = [verdict.fidelity.psnr_db, verdict.agreement.psnr_db];
     assert!(seen > 30.0 && agreement > 36.0, "{verdict:?}");
     assert_eq!(svg::read(&fit.svg()).unwrap(), fit.scene);

@@ -295,7 +295,7 @@ fn drawing(criterion: &mut Criterion, image: &Image) {
         b.iter(|| verify::render(black_box(&text), verify::Size::Scale(1.0), None).unwrap());
     });
     group.bench_function("verify", |b| {
-        b.iter(|| verify::verify(black_box(&text), image, &drawn).unwrap());
+        b.iter(|| verify::verify(black_box(&text), image, &drawn, [1.0; 3]).unwrap());
     });
     group.finish();
 

@@ -54,7 +54,7 @@ fn expect_sound(name: &str, (fit, text): &(Fit, String), is_useful: bool) {
     let mut soft = fit.soft.planes().iter().flatten();
     let is_finite = soft.all(|v| v.is_finite()) && fit.scene.marks().all(Mark::is_finite);
     assert!(is_finite, "{name}");
-    let verdict = verify::verify(text, &fit.target, &fit.soft).unwrap();
+    let verdict = verify::verify(text, &fit.target, &fit.soft, fit.matte).unwrap();
     let is_near = name == CHECKERBOARD.0 && verdict.agreement.psnr_db >= CHECKERBOARD.1;
     assert!(verdict.agrees() || is_near, "{name}: {verdict:?}");
     let mean = fit.target.planes().each_ref().map(|plane| {

@@ -59,16 +59,18 @@ pub(in crate::fit) fn with_ground(picture: &Image, price_per_byte: f32) -> (Back
     (background, shadows)
 }
 
-/// The matte that a picture with alpha is flattened onto if the drawing is not transparent.
-pub(in crate::fit) fn matte(background: Background) -> Rgb {
+/// What a drawing that is not transparent lies on, and what a picture with alpha is flattened onto for it: white unless told
+/// otherwise. Without a background, that is the paper of an opaque picture, which then is in no mark.
+pub(in crate::fit) fn matte(background: Background, picture: &Image) -> Rgb {
     match background {
         Background::Color(color) => color,
-        Background::Auto | Background::None => [1.0; 3],
+        Background::None => paper(picture).unwrap_or([1.0; 3]),
+        Background::Auto => [1.0; 3],
     }
 }
 
-/// The background that a fit to `target` starts with, and whether it keeps its colour.
-pub(in crate::fit) fn choose(background: Background, target: &Image) -> (Rgb, bool) {
+/// The background that a fit to `target` on `matte` starts with, and whether it keeps its colour.
+pub(in crate::fit) fn choose(background: Background, target: &Image, matte: Rgb) -> (Rgb, bool) {
     match background {
         Background::Auto => {
             let levels = target.to_rgb8();
@@ -78,8 +80,7 @@ pub(in crate::fit) fn choose(background: Background, target: &Image) -> (Rgb, bo
             let color = paper.unwrap_or_else(|| prevailing_color(target, colors));
             (color, false)
         }
-        Background::None => ([1.0; 3], true),
-        Background::Color(color) => (color, true),
+        Background::None | Background::Color(_) => (matte, true),
     }
 }
 
@@ -182,7 +183,7 @@ mod tests {
             _ => 236 + (x * 7 + y * 11) % 9,
         };
         let page = Image::from_fn(40, 40, 3, |x, y, _| of(x, y) as f32 / 255.0).unwrap();
-        let (color, is_fixed) = choose(Background::Auto, &page);
+        let (color, is_fixed) = choose(Background::Auto, &page, [1.0; 3]);
         assert!(!is_fixed);
         assert!(
             color.iter().all(|v| (v * 255.0 - 240.0).abs() < 1.5),
@@ -190,7 +191,7 @@ mod tests {
         );
         // Where every tone is as common as any other one there is no paper, and the background is their mean.
         let striped = Image::from_fn(40, 40, 3, |x, y, _| ((x + y) % 40) as f32 / 39.0).unwrap();
-        let (color, _) = choose(Background::Auto, &striped);
+        let (color, _) = choose(Background::Auto, &striped, [1.0; 3]);
         assert!((color[0] - 0.5).abs() < 0.1, "{color:?}");
     }
 

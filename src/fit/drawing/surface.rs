@@ -68,10 +68,10 @@ impl Prepared {
         // A drawing on two mattes keeps its alpha in the target; on one it is flattened onto the background.
         let mattes = mattes(picture, background);
         let target = match *mattes {
-            [_] => picture.flattened(background::matte(background)),
+            [matte] => picture.flattened(matte),
             _ => picture.clone(),
         };
-        let (color, is_fixed) = background::choose(background, &target);
+        let (color, is_fixed) = background::choose(background, &target, mattes[0]);
         let surface = |&matte: &Rgb| {
             // On two mattes, the background is the matte itself.
             let color = if mattes.len() == 1 { color } else { matte };
@@ -119,7 +119,7 @@ impl Prepared {
 fn mattes(picture: &Image, background: Background) -> Vec<Rgb> {
     match (picture.alpha(), background) {
         (Some(_), Background::Auto | Background::None) => vec![BLACK, WHITE],
-        _ => vec![WHITE],
+        _ => vec![background::matte(background, picture)],
     }
 }
 

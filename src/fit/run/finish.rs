@@ -41,6 +41,11 @@ pub(in crate::fit) fn finish(mut session: Session<'_>, compared: bool) -> Result
         stop: session.cut_by().unwrap_or(session.history.stop),
         stacking_db: session.history.stacking_db,
         target: session.target,
+        matte: session
+            .drawing
+            .surfaces
+            .last()
+            .map_or([1.0; 3], |surface| surface.matte),
         damage: None,
         meant: None,
         stages,
