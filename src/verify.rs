@@ -381,7 +381,7 @@ mod tests {
     fn a_drawing_agrees_with_its_own_render() {
         let svg = drawing();
         let picture = render(&svg, Size::Scale(1.0), None).unwrap();
-        let verdict = verify(&svg, &picture, &picture).unwrap();
+        let verdict = verify(&svg, &picture, &picture, WHITE).unwrap();
         assert_eq!(
             (verdict.fidelity.psnr_db, verdict.agreement.max_abs),
             (f64::INFINITY, 0)
@@ -391,7 +391,7 @@ mod tests {
     #[test]
     fn a_drawing_of_something_else_disagrees() {
         let black = Image::filled(40, 20, [0.0; 3]).unwrap();
-        assert!(!verify(&drawing(), &black, &black).unwrap().agrees());
+        assert!(!verify(&drawing(), &black, &black, WHITE).unwrap().agrees());
     }
 
     #[test]

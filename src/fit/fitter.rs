@@ -147,10 +147,13 @@ impl<'a> Fitter<'a> {
             }
             _ => restored,
         };
-        task.doubt = restored.as_ref().map_or(0.0, |r| r.damage.doubt());
+        task.doubt = restored
+            .as_ref()
+            .map(|r| r.damage.doubt())
+            .unwrap_or_default();
         let target = restored.as_ref().map_or(picture, |r| &r.picture);
         if task.config.is_open() {
-            task.paleness_db = paleness(target, task.doubt);
+            task.paleness_db = paleness(target, task.doubt.most());
         }
         // 2. Reduce it to the pixels that its drawing needs.
         let reduced = pool.install(|| task.reduce(target));

@@ -111,7 +111,7 @@ pub(super) fn draw<'a>(
     // 3. Strokes alone, where areas are doubtful.
     let has_time = |limit: Duration| since.elapsed() <= limit.mul_f64(LATEST);
     let may_compete = stop != Stop::Interrupted
-        && has_doubtful_areas(&drawn, task.doubt)
+        && has_doubtful_areas(&drawn, task.doubt.most())
         && config.budget.time.is_none_or(has_time);
     let mut best = starts.better(drawn);
     if let Some(config) = by_strokes.filter(|_| may_compete) {

@@ -8,6 +8,7 @@ use super::drawing::background;
 use super::drawing::focus::Focus;
 use crate::error::{Error, Result};
 use crate::image::Image;
+use crate::restore::Doubt;
 use crate::scene::Scene;
 
 /// What a fit draws, and how.
@@ -19,8 +20,8 @@ pub(super) struct Task {
     pub(super) focus: Option<Focus>,
     /// Size of the picture, px, if a reduced one is drawn.
     pub(super) page: Option<[u32; 2]>,
-    /// Estimated RMS distance of the picture from the restored one, in 8-bit levels.
-    pub(super) doubt: f32,
+    /// How far the picture may be from what it means.
+    pub(super) doubt: Doubt,
     /// How much more quality a drawing on paper needs for want of contrast, dB; `None` of other pictures.
     pub(super) paleness_db: Option<f64>,
     /// Most marks that areas are split into.
@@ -35,7 +36,7 @@ impl Task {
             base: None,
             focus: None,
             page: None,
-            doubt: 0.0,
+            doubt: Doubt::default(),
             paleness_db: None,
             most_marks: usize::MAX,
         }
@@ -45,7 +46,7 @@ impl Task {
     pub(super) fn price(&self, pixels: usize) -> Price {
         Price::of(
             &self.config,
-            self.doubt,
+            self.doubt.most(),
             self.paleness_db.unwrap_or(0.0),
             pixels,
         )

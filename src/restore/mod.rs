@@ -85,15 +85,33 @@ pub struct Damage {
 }
 
 impl Damage {
-    /// The distance of the picture that is meant from the truth, as far as can be told, RMS in levels of 8 bits: noise goes, but for a
-    /// part.
-    pub fn doubt(&self) -> f32 {
+    /// The distance of the picture that is meant from the truth, as far as can be told: noise goes, but for a part.
+    pub fn doubt(&self) -> Doubt {
         let of_means = if self.dithering > 0.0 {
             dither::DOUBT
         } else {
             0.0
         };
-        self.ringing.max(self.noise / 2.0).max(of_means)
+        Doubt {
+            far: (self.noise / 2.0).max(of_means),
+            near: self.ringing,
+        }
+    }
+}
+
+/// How far a picture may be from what it means, RMS in levels of luma of 8 bits.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Doubt {
+    /// Far from edges.
+    pub far: f32,
+    /// Beside edges.
+    pub near: f32,
+}
+
+impl Doubt {
+    /// The larger of the two.
+    pub fn most(self) -> f32 {
+        self.far.max(self.near)
     }
 }
 

@@ -135,7 +135,7 @@ impl<'a> Choice<'a> {
         }
         let placing = Placing::of(self.flat);
         // Where there is no damage, edges that colours do not tell are those of something else, such as gradients.
-        let is_clean = self.flat.tracing.doubt == 0.0;
+        let is_clean = self.flat.tracing.doubt.most() == 0.0;
         let fills = placing.fills(|region| is_clean && !self.is_grouped(region))?;
         let lines = |group: &Group| self.lines(group, &placing, &fills);
         let mut lines: Vec<Option<Vec<Stroke>>> = self.groups.par_iter().map(lines).collect();

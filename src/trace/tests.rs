@@ -41,7 +41,7 @@ fn traced_on(pictures: &[(Image, Rgb)], marks: Marks) -> Vec<Traced> {
     let price = |mark: &Mark| 0.0012 * (40.0 + 10.0 * mark.points() as f32);
     let tracing = Tracing {
         most: usize::MAX,
-        doubt: 0.0,
+        doubt: crate::restore::Doubt::default(),
         has_shades: true,
         may_place: true,
         is_of_details: false,

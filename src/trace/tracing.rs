@@ -1,10 +1,12 @@
 //! What tracing looks for.
 
+use crate::restore::Doubt;
+
 /// What tracing looks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tracing {
-    /// How far the picture may be from what it means, RMS in levels of 8 bits.
-    pub doubt: f32,
+    /// How far the picture may be from what it means.
+    pub doubt: Doubt,
     /// True if gradients may fill shapes.
     pub has_shades: bool,
     /// Most marks. A shape comes apart into elements of its own only where there is room.

@@ -71,7 +71,7 @@ pub(in crate::fit) fn recover(session: &mut Session<'_>) -> Result<Outcome> {
 /// The pixels in and near lost details, on any matte.
 fn lost(session: &Session<'_>, drawn: &[Image]) -> Vec<bool> {
     let drawing = &session.drawing;
-    let contrast = CONTRAST + CONTRAST_OF_DOUBT * session.task.doubt / 255.0;
+    let contrast = CONTRAST + CONTRAST_OF_DOUBT * session.task.doubt.most() / 255.0;
     let mut lost = vec![false; drawing.pixels()];
     for (surface, drawn) in drawing.surfaces.iter().zip(drawn) {
         let details = Details::of(surface.picture(), contrast);

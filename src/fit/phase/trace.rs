@@ -52,7 +52,7 @@ pub(in crate::fit) fn trace_lines(session: &mut Session<'_>) -> Result<Outcome> 
             match is_faithful(session, &placed) {
                 true => placed,
                 // Damage hides where edges are exactly, so that a descent finds out.
-                false if tracing.doubt > 0.0 => fitted(placed),
+                false if tracing.doubt.most() > 0.0 => fitted(placed),
                 // Colours told wrongly what there is.
                 false => paying(
                     session,

@@ -83,21 +83,20 @@ pub(super) fn flat_colors<'a>(
     pixels: &'a Pixels<'a>,
     shaded: Shaded,
     mattes: usize,
-    doubt: f32,
+    doubts: &[f32],
 ) -> (Colors<'a>, Vec<u16>) {
-    let mut flat = flat_pixels(pixels, (FLAT + FLAT_OF_DOUBT * doubt) * LEVEL);
+    let mut flat = flat_pixels(pixels, doubts);
     for (i, flat) in flat.iter_mut().enumerate() {
         *flat &= shaded.at(i).is_none();
     }
-    let apart = APART + APART_OF_DOUBT * doubt;
-    let list = clusters(pixels, &flat, apart);
+    let list = clusters(pixels, &flat, doubts);
     let colors = Colors {
         pixels,
         list,
         shades: shaded.list.clone(),
         mattes,
     };
-    let mut labels = labels(&colors, &flat, apart, EXACT + EXACT_OF_DOUBT * doubt);
+    let mut labels = labels(&colors, &flat, doubts);
     for (i, label) in labels.iter_mut().enumerate() {
         if let Some(shade) = shaded.at(i) {
             *label = SHADES + shade;
@@ -106,8 +105,18 @@ pub(super) fn flat_colors<'a>(
     (colors, labels)
 }
 
-/// True for each pixel whose 3×3 neighbours are within a range of `tolerance`.
-fn flat_pixels(pixels: &Pixels<'_>, tolerance: f32) -> Vec<bool> {
+/// How many levels colours of such a doubt are apart.
+fn apart(doubt: f32) -> f32 {
+    APART + APART_OF_DOUBT * doubt
+}
+
+/// How many levels a pixel of such a doubt may be from its colour beside another one.
+fn exact(doubt: f32) -> f32 {
+    EXACT + EXACT_OF_DOUBT * doubt
+}
+
+/// True for each pixel whose 3×3 neighbours are within a range that its doubt allows.
+fn flat_pixels(pixels: &Pixels<'_>, doubts: &[f32]) -> Vec<bool> {
     let (width, height) = (pixels.width, pixels.height);
     let mut flat = vec![true; width * height];
     let rows = flat.par_chunks_exact_mut(width).enumerate();
@@ -128,46 +137,50 @@ fn flat_pixels(pixels: &Pixels<'_>, tolerance: f32) -> Vec<bool> {
                 let high = near
                     .iter()
                     .fold(f32::NEG_INFINITY, |high, c| high.max(c[1]));
-                *flat &= high - low <= tolerance;
+                let tolerance = FLAT + FLAT_OF_DOUBT * doubts[y * width + x];
+                *flat &= high - low <= tolerance * LEVEL;
             }
         }
     });
     flat
 }
 
-/// Pixels of one bin: their number and sum.
+/// Pixels of one bin: their number, and the sums of their colours and doubts.
 struct Bin {
     key: u64,
     count: f32,
     sum: Pixel,
+    doubt: f32,
 }
 
 /// The colours of the flat pixels that are not those of the canvas, the most frequent first.
-fn clusters(pixels: &Pixels<'_>, flat: &[bool], apart: f32) -> Vec<Pixel> {
+fn clusters(pixels: &Pixels<'_>, flat: &[bool], doubts: &[f32]) -> Vec<Pixel> {
     const LEVELS_PER_BIN: f32 = 4.0;
     let mut bins: Vec<Bin> = Vec::new();
     for i in (0..flat.len()).filter(|&i| flat[i]) {
         let pixel = pixels.target.at(i);
-        if away(&pixel, &pixels.canvas.at(i)) <= apart * LEVEL {
+        if away(&pixel, &pixels.canvas.at(i)) <= apart(doubts[i]) * LEVEL {
             continue;
         }
         let bin = |v: &f32| (v.clamp(0.0, 1.0) * (255.0 / LEVELS_PER_BIN)) as u64;
         let key = pixel.iter().fold(0, |key, v| (key << 8) | bin(v));
         // Runs of one bin are one entry.
+        let bin = Bin {
+            key,
+            count: 1.0,
+            sum: pixel,
+            doubt: doubts[i],
+        };
         match bins.last_mut().filter(|last| last.key == key) {
-            Some(last) => last.add(1.0, &pixel),
-            None => bins.push(Bin {
-                key,
-                count: 1.0,
-                sum: pixel,
-            }),
+            Some(last) => last.add(&bin),
+            None => bins.push(bin),
         }
     }
     bins.sort_by_key(|bin| bin.key);
     bins.dedup_by(|next, kept| {
         let is_same = next.key == kept.key;
         if is_same {
-            kept.add(next.count, &next.sum);
+            kept.add(next);
         }
         is_same
     });
@@ -175,6 +188,7 @@ fn clusters(pixels: &Pixels<'_>, flat: &[bool], apart: f32) -> Vec<Pixel> {
     let mut colors: Vec<Pixel> = Vec::new();
     for bin in bins.iter().take_while(|bin| bin.count >= LEAST_AREA as f32) {
         let mean = bin.sum.map(|sum| sum / bin.count);
+        let apart = apart(bin.doubt / bin.count);
         let is_new = |color: &Pixel| away(color, &mean) > apart * LEVEL;
         if colors.len() < MOST_COLORS && colors.iter().all(is_new) {
             colors.push(mean);
@@ -184,22 +198,23 @@ fn clusters(pixels: &Pixels<'_>, flat: &[bool], apart: f32) -> Vec<Pixel> {
 }
 
 impl Bin {
-    fn add(&mut self, count: f32, sum: &Pixel) {
-        self.count += count;
-        let channels = self.sum.iter_mut().zip(sum);
+    fn add(&mut self, other: &Self) {
+        self.count += other.count;
+        self.doubt += other.doubt;
+        let channels = self.sum.iter_mut().zip(other.sum);
         channels.for_each(|(all, more)| *all += more);
     }
 }
 
-/// The label of each pixel that is flat, or at most `exact` levels from a colour; colours are `apart` by more levels than that. Beside another label it has to be nearer.
-fn labels(colors: &Colors<'_>, flat: &[bool], apart: f32, exact: f32) -> Vec<u16> {
+/// The label of each pixel that is flat, or about of one colour. Beside another label it has to be nearer.
+fn labels(colors: &Colors<'_>, flat: &[bool], doubts: &[f32]) -> Vec<u16> {
     let pixels = colors.pixels;
     let all = (0..flat.len()).into_par_iter();
     let alone = all.clone().map(|i| {
         let (label, distance) = colors.nearest(i);
         let reach = match (flat[i], label) {
-            (true, _) => apart + 3.0,
-            (false, CANVAS) => exact,
+            (true, _) => apart(doubts[i]) + 3.0,
+            (false, CANVAS) => exact(doubts[i]),
             (false, _) => 1.0,
         };
         let is_own = distance <= reach * LEVEL;
@@ -208,7 +223,7 @@ fn labels(colors: &Colors<'_>, flat: &[bool], apart: f32, exact: f32) -> Vec<u16
     let alone: Vec<(u16, f32)> = alone.collect();
     let label = |i: usize| {
         let (label, distance) = alone[i];
-        let is_exact = distance <= exact * LEVEL;
+        let is_exact = distance <= exact(doubts[i]) * LEVEL;
         let is_inner = || pixels.around(i, 1).all(|k| alone[k].0 == label);
         if is_exact || is_inner() { label } else { NONE }
     };

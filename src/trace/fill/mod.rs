@@ -20,6 +20,7 @@ mod colors;
 mod compound;
 mod connected;
 mod corners;
+mod doubts;
 mod hull;
 mod mixtures;
 mod outline;
@@ -68,6 +69,8 @@ pub(super) struct Flat<'a> {
     translucent: Translucent,
     stack: Stack,
     pub(super) tracing: Tracing,
+    /// How far each pixel may be from what the picture means, levels.
+    doubts: Vec<f32>,
 }
 
 /// The share of the pixels that has to be flat, or there are no filled shapes. Drawings of filled shapes have 0.69 to 0.99,
@@ -107,7 +110,8 @@ impl<'a> Flat<'a> {
             true => Shaded::of(pixels, mattes),
             false => Shaded::none(pixels),
         };
-        let (mut colors, mut labels) = colors::flat_colors(pixels, shaded, mattes, tracing.doubt);
+        let doubts = doubts::doubts(pixels, tracing.doubt);
+        let (mut colors, mut labels) = colors::flat_colors(pixels, shaded, mattes, &doubts);
         let flat = labels.iter().filter(|label| **label != NONE).count();
         if (flat as f32) < LEAST_FLAT * labels.len() as f32 {
             return None;
@@ -116,7 +120,7 @@ impl<'a> Flat<'a> {
         if explained(pixels, &mixtures) < LEAST_EXPLAINED {
             return None;
         }
-        let regions = Regions::of(&colors, mixtures, parts, tracing.doubt);
+        let regions = Regions::of(&colors, mixtures, parts, &doubts);
         let neighbours = regions.neighbours();
         if are_of_texture(&neighbours, pixels.width * pixels.height) {
             return None;
@@ -140,6 +144,7 @@ impl<'a> Flat<'a> {
             translucent,
             stack,
             tracing,
+            doubts,
         })
     }
 

@@ -174,7 +174,7 @@ impl<'a> Placing<'a> {
             let (contrast, spread) = others
                 .min_by(|a, b| a.0.total_cmp(&b.0))
                 .unwrap_or((1.0, 0.0));
-            let noise = f64::from(flat.tracing.doubt.max(0.3) * LEVEL).max(spread);
+            let noise = f64::from(flat.doubts[i].max(0.3) * LEVEL).max(spread);
             // What two colours do not explain may be a third one.
             let rest = f64::from(away(&flat.pixels.target.at(i), &flat.seen(i)));
             let rest = if own == second { 0.0 } else { rest };

@@ -44,7 +44,7 @@ impl Regions {
         colors: &Colors<'_>,
         mut mixtures: Vec<Mixture>,
         parts: &Parts,
-        doubt: f32,
+        doubts: &[f32],
     ) -> Self {
         let width = colors.pixels.width;
         // 1. Connected pixels of one label are a region.
@@ -54,12 +54,13 @@ impl Regions {
             (of, members) = by_label(&mixtures);
         }
         // 2. What the rest of a damage explains is nothing of its own.
-        for rank in worth::ranks(&members).filter(|_| doubt > 0.0) {
+        let are_doubtful = doubts.iter().any(|doubt| *doubt > 0.0);
+        for rank in worth::ranks(&members).filter(|_| are_doubtful) {
             let worth = Worth {
                 colors,
                 of: &of,
                 members: &members,
-                doubt,
+                doubts,
             };
             if worth.leave_to_others(rank, &mut mixtures) {
                 (of, members) = by_label(&mixtures);
@@ -412,10 +413,12 @@ mod tests {
     fn regions_of_speck(levels: f32, doubt: f32) -> usize {
         let pixels = speck(levels);
         let shaded = Shaded::none(&pixels);
-        let (mut colors, mut labels) = colors::flat_colors(&pixels, shaded, 1, 0.0);
+        let (mut colors, mut labels) = colors::flat_colors(&pixels, shaded, 1, &[0.0; 40 * 24]);
         let mixtures = mixtures::mixtures(&mut colors, &mut labels);
         let parts = Parts::of(&[], 40, 40 * 24);
-        Regions::of(&colors, mixtures, &parts, doubt).list.len()
+        Regions::of(&colors, mixtures, &parts, &[doubt; 40 * 24])
+            .list
+            .len()
     }
 
     #[test]
