@@ -55,3 +55,47 @@ fn widened(plane: &[f32], width: usize, extreme: fn(f32, f32) -> f32) -> Vec<f32
         .flat_map_iter(in_column)
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::areas::Planes;
+    use super::*;
+
+    /// The doubts along a row of 60 px with an edge of this contrast, levels, at 30 px.
+    fn along(contrast: f32, doubt: Doubt) -> [f32; 4] {
+        let value = |i: usize| 0.2 + if i % 60 < 30 { 0.0 } else { contrast * LEVEL };
+        let plane: Vec<f32> = (0..60 * 20).map(value).collect();
+        let planes = || Planes(vec![plane.clone().into(); 3]);
+        let pixels = Pixels {
+            width: 60,
+            height: 20,
+            target: planes(),
+            canvas: planes(),
+            weights: None,
+        };
+        let doubts = doubts(&pixels, doubt);
+        [10, 21, 22, 37].map(|x| doubts[10 * 60 + x])
+    }
+
+    #[test]
+    fn compression_leaves_something_within_a_block_of_an_edge() {
+        let doubt = Doubt {
+            far: 0.0,
+            near: 3.0,
+        };
+        assert_eq!(along(120.0, doubt), [0.0, 0.0, 6.0, 6.0]);
+        // Beside a pale edge it is less.
+        let pale = along(12.0, doubt);
+        assert_eq!(pale[..2], [0.0; 2]);
+        assert!(pale[2..].iter().all(|d| (d - 2.0).abs() < 1e-3), "{pale:?}");
+    }
+
+    #[test]
+    fn noise_is_everywhere() {
+        let doubt = Doubt {
+            far: 4.0,
+            near: 1.0,
+        };
+        assert_eq!(along(120.0, doubt), [4.0; 4]);
+    }
+}
