@@ -91,6 +91,19 @@ fn judged(picture: &Image, config: &Config) -> (Scene, Quality) {
 }
 
 #[test]
+fn cards_that_are_lighter_than_their_page_have_one_shadow() {
+    let cards = r##"<g fill="#141850" fill-opacity="0.25" filter="url(#f)"><rect x="14" y="28" width="64" height="80" rx="8"/><rect x="92" y="28" width="64" height="80" rx="8"/></g>
+<g fill="#fff"><rect x="14" y="20" width="64" height="80" rx="8"/><rect x="92" y="20" width="64" height="80" rx="8"/></g>"##;
+    let (scene, fidelity) = judged(&picture(Some("#f6f7fb"), 5.0, cards), &Config::default());
+    let [shadow] = &scene.ground[..] else {
+        panic!("{:?}", scene.ground);
+    };
+    assert!((shadow.blur - 5.0).abs() < 0.8, "{shadow:?}");
+    assert_eq!((shadow.rings.len(), scene.len()), (2, 2));
+    assert!(fidelity.ssimulacra2 > 85.0, "{fidelity:?}");
+}
+
+#[test]
 fn a_glow_and_a_fade_are_a_gradient_each() {
     for name in ["glow-300", "fade-400"] {
         let picture = sample(name);

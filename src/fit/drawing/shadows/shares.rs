@@ -9,6 +9,12 @@ use crate::scene::Rgb;
 const PAGE: f32 = 1.5 / 255.0;
 /// Largest second difference of soft pixels.
 const BEND: f32 = 10.0 / 255.0;
+/// Reach across an edge, px. A sharp edge changes within a pixel by more than [`SHARP`] of what it does within so many to each side; a
+/// blurred one of 1.5 px by 0.52.
+const WIDE: usize = 3;
+const SHARP: f32 = 0.75;
+/// Change that is none.
+const STEP: f32 = 1.5 / 255.0;
 /// Largest difference of soft pixels from a mixture of the page with one colour.
 const NEAR: f32 = 4.0 / 255.0;
 /// The least share of the pixels that is soft.
@@ -107,18 +113,26 @@ impl Values<'_> {
         [r, g, b, alpha]
     }
 
-    /// True for a pixel whose neighbours on opposite sides have it about in their middle.
-    fn is_smooth(&self, i: usize, bend: f32) -> bool {
+    /// True for a pixel whose neighbours on opposite sides have it about in their middle, and that is on no sharp edge.
+    fn is_smooth(&self, i: usize) -> bool {
         let (w, height) = (self.0.width(), self.0.height());
-        let (x, y) = (i % w, i / w);
-        let is_inner = [x > 0 && x + 1 < w, y > 0 && y + 1 < height];
         let own = self.at(i);
-        [1, w].into_iter().zip(is_inner).all(|(step, is_inner)| {
-            !is_inner || {
-                let [before, after] = [self.at(i - step), self.at(i + step)];
-                (0..4).all(|c| (before[c] + after[c] - 2.0 * own[c]).abs() <= bend)
-            }
-        })
+        [(1, i % w, w), (w, i / w, height)]
+            .into_iter()
+            .all(|(step, at, size)| {
+                let ends = |far: usize| {
+                    let is_inner = at >= far && at + far < size;
+                    is_inner.then(|| [self.at(i - far * step), self.at(i + far * step)])
+                };
+                let Some([before, after]) = ends(1) else {
+                    return true;
+                };
+                let near = away(before, after);
+                let is_sharp =
+                    ends(WIDE).is_some_and(|[first, last]| near > STEP + SHARP * away(first, last));
+                let bends = |c: usize| (before[c] + after[c] - 2.0 * own[c]).abs() > BEND;
+                !is_sharp && !(0..4).any(bends)
+            })
     }
 }
 
@@ -134,10 +148,11 @@ fn kinds(values: &Values<'_>, page: Value) -> Vec<Kind> {
         false => Kind::Other,
     };
     let mut kinds: Vec<Kind> = (0..values.len()).map(kind).collect();
-    // A flood through smooth pixels: a shadow is connected with the page, and an edge stops it.
-    let page = (0..kinds.len()).filter(|&i| kinds[i] == Kind::Page);
+    // A flood through smooth pixels: a shadow is connected with the page, and an edge stops it. An edge between a shadow and something
+    // lighter than the page has pixels of the page's colour, from which nothing spreads.
+    let page = (0..kinds.len()).filter(|&i| kinds[i] == Kind::Page && values.is_smooth(i));
     flooded(page.collect(), [values.width(), values.len()], |_, k| {
-        let is_soft = kinds[k] == Kind::Other && values.is_smooth(k, BEND);
+        let is_soft = kinds[k] == Kind::Other && values.is_smooth(k);
         if is_soft {
             kinds[k] = Kind::Soft;
         }
