@@ -1,7 +1,5 @@
 //! How far each pixel may be from what the picture means.
 
-use rayon::prelude::*;
-
 use super::super::areas::{LEVEL, Pixels};
 use crate::restore::Doubt;
 
@@ -14,46 +12,41 @@ const CHANNELS: f32 = 2.0;
 /// with 6 and 12 marks are 9.9 and 10.1, at 43.6 and 43.5 dB from the clean picture.
 const CONTRAST: f32 = 6.0;
 
-/// How many levels each pixel may be off in the channel that is farthest off. Compression leaves nothing behind where there is no edge, and little beside a pale one.
+/// How many levels each pixel may be off in the channel that is farthest off. Compression leaves nothing behind where there is no edge,
+/// and little beside a pale one.
 pub(super) fn doubts(pixels: &Pixels<'_>, doubt: Doubt) -> Vec<f32> {
     let near = CHANNELS * doubt.near;
     let mut ranges = vec![0.0_f32; pixels.width * pixels.height];
     if near > doubt.far {
         for plane in &pixels.target.0 {
-            let highest = widened(plane, pixels.width, f32::max);
-            let lowest = widened(plane, pixels.width, f32::min);
-            let ends = highest.par_iter().zip(&lowest);
-            let ranges = ranges.par_iter_mut().zip(ends);
-            ranges.for_each(|(range, (high, low))| *range = range.max(high - low));
+            let (lowest, highest) = extremes(plane, pixels.width);
+            for (i, range) in ranges.iter_mut().enumerate() {
+                *range = range.max(highest[i] - lowest[i]);
+            }
         }
     }
-    let of = |range: f32| near.min(range / (CONTRAST * LEVEL)).max(doubt.far);
-    ranges.into_par_iter().map(of).collect()
+    for range in &mut ranges {
+        *range = near.min(*range / (CONTRAST * LEVEL)).max(doubt.far);
+    }
+    ranges
 }
 
-/// The extreme of the values within a block of each pixel, either way.
-fn widened(plane: &[f32], width: usize, extreme: fn(f32, f32) -> f32) -> Vec<f32> {
-    let around = |at: usize, size: usize| at.saturating_sub(BLOCK)..(at + BLOCK + 1).min(size);
-    let in_row = |row: &[f32]| -> Vec<f32> {
-        let of = |x: usize| {
-            let near = row[around(x, width)].iter().copied();
-            near.fold(row[x], extreme)
-        };
-        (0..width).map(of).collect()
-    };
-    let rows: Vec<Vec<f32>> = plane.par_chunks(width).map(in_row).collect();
-    let in_column = |y: usize| {
-        let mut row = rows[y].clone();
-        for other in &rows[around(y, rows.len())] {
-            let pixels = row.iter_mut().zip(other);
-            pixels.for_each(|(most, value)| *most = extreme(*most, *value));
+/// The least and the largest value within a block of each pixel, either way.
+fn extremes(plane: &[f32], width: usize) -> (Vec<f32>, Vec<f32>) {
+    let (mut lowest, mut highest) = (plane.to_vec(), plane.to_vec());
+    // Rows first, and then columns of what that gives.
+    for (step, size) in [(1, width), (width, plane.len() / width)] {
+        let (low, high) = (lowest.clone(), highest.clone());
+        for i in 0..plane.len() {
+            let at = i / step % size;
+            let first = i - at.min(BLOCK) * step;
+            for k in 0..=at.min(BLOCK) + BLOCK.min(size - 1 - at) {
+                lowest[i] = lowest[i].min(low[first + k * step]);
+                highest[i] = highest[i].max(high[first + k * step]);
+            }
         }
-        row
-    };
-    (0..rows.len())
-        .into_par_iter()
-        .flat_map_iter(in_column)
-        .collect()
+    }
+    (lowest, highest)
 }
 
 #[cfg(test)]
