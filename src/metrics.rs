@@ -20,7 +20,7 @@ use crate::math;
 use crate::scene::Rgb;
 pub(crate) use details::Details;
 pub(crate) use fineness::fine_share;
-pub(crate) use window::average;
+pub(crate) use window::{average, extremes};
 
 const WHITE: Rgb = [1.0; 3];
 

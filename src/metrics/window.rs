@@ -1,4 +1,4 @@
-//! Means and sums of windows.
+//! Means, sums and extremes of windows.
 
 use std::collections::VecDeque;
 
@@ -49,6 +49,39 @@ fn add(sums: &mut [f64], values: &[f64]) {
 /// Number of the `length` places that are at most `radius` away from place `i`.
 fn in_reach(i: usize, length: usize, radius: usize) -> usize {
     length.min(i + radius + 1) - i.saturating_sub(radius)
+}
+
+/// The extreme value of the window of 2`reach` + 1 rows and columns around each pixel, as far as that is in the picture.
+pub(crate) fn extremes(
+    values: &[f32],
+    width: usize,
+    reach: usize,
+    pick: impl Fn(f32, f32) -> f32 + Copy + Sync,
+) -> Vec<f32> {
+    let height = values.len() / width;
+    let merge = |out: &mut [f32], others: &[f32]| {
+        let values = out.iter_mut().zip(others);
+        values.for_each(|(value, other)| *value = pick(*value, *other));
+    };
+    // One column, or row, of the window at a time, so that many pixels are compared at once.
+    let mut across = values.to_vec();
+    let rows = across.par_chunks_exact_mut(width);
+    rows.zip(values.par_chunks_exact(width))
+        .for_each(|(out, row)| {
+            for shift in 1..(reach + 1).min(width) {
+                merge(out, &row[shift..]);
+                merge(&mut out[shift..], row);
+            }
+        });
+    let mut out = across.clone();
+    // A square window is a row of columns: the extremes down the columns of the extremes across.
+    let rows = out.par_chunks_exact_mut(width).enumerate();
+    rows.for_each(|(y, out)| {
+        for other in y.saturating_sub(reach)..(y + reach + 1).min(height) {
+            merge(out, &across[other * width..(other + 1) * width]);
+        }
+    });
+    out
 }
 
 /// Rows and columns of a patch, px; fewer where the picture has fewer.

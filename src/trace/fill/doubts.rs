@@ -1,6 +1,7 @@
 //! How far each pixel may be from what the picture means.
 
 use super::super::areas::{LEVEL, Pixels};
+use crate::metrics::extremes;
 use crate::restore::Doubt;
 
 /// How far a block of JPEG beside an edge reaches, px.
@@ -19,9 +20,10 @@ pub(super) fn doubts(pixels: &Pixels<'_>, doubt: Doubt) -> Vec<f32> {
     let mut ranges = vec![0.0_f32; pixels.width * pixels.height];
     if near > doubt.far {
         for plane in &pixels.target.0 {
-            let (lowest, highest) = extremes(plane, pixels.width);
-            for (i, range) in ranges.iter_mut().enumerate() {
-                *range = range.max(highest[i] - lowest[i]);
+            let lowest = extremes(plane, pixels.width, BLOCK, f32::min);
+            let highest = extremes(plane, pixels.width, BLOCK, f32::max);
+            for (range, (low, high)) in ranges.iter_mut().zip(lowest.iter().zip(highest)) {
+                *range = range.max(high - low);
             }
         }
     }
@@ -29,24 +31,6 @@ pub(super) fn doubts(pixels: &Pixels<'_>, doubt: Doubt) -> Vec<f32> {
         *range = near.min(*range / (CONTRAST * LEVEL)).max(doubt.far);
     }
     ranges
-}
-
-/// The least and the largest value within a block of each pixel, either way.
-fn extremes(plane: &[f32], width: usize) -> (Vec<f32>, Vec<f32>) {
-    let (mut lowest, mut highest) = (plane.to_vec(), plane.to_vec());
-    // Rows first, and then columns of what that gives.
-    for (step, size) in [(1, width), (width, plane.len() / width)] {
-        let (low, high) = (lowest.clone(), highest.clone());
-        for i in 0..plane.len() {
-            let at = i / step % size;
-            let first = i - at.min(BLOCK) * step;
-            for k in 0..=at.min(BLOCK) + BLOCK.min(size - 1 - at) {
-                lowest[i] = lowest[i].min(low[first + k * step]);
-                highest[i] = highest[i].max(high[first + k * step]);
-            }
-        }
-    }
-    (lowest, highest)
 }
 
 #[cfg(test)]
