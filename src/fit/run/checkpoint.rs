@@ -83,6 +83,11 @@ impl Checkpoint {
         self.trouble.as_ref()
     }
 
+    /// True if the file is intact and of the fit with this fingerprint.
+    pub(in crate::fit) fn is_of(&self, fingerprint: u64) -> bool {
+        fs::read(&self.path).is_ok_and(|bytes| self.payload(&bytes, fingerprint).is_ok())
+    }
+
     /// The state that the file holds, which must be of the fit with this fingerprint; `None` if there is no file.
     pub(in crate::fit) fn load<T: DeserializeOwned>(&self, fingerprint: u64) -> Result<Option<T>> {
         let bytes = match fs::read(&self.path) {

@@ -392,14 +392,24 @@ impl<'a> Session<'a> {
         self.progress.stopped().or(hurried)
     }
 
-    /// Goes on from the state in `checkpoint`, if it holds one, and keeps the state there from now on.
-    pub(in crate::fit) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
-        let fingerprint = checkpoint::fingerprint(
+    /// Identifies the fit in a checkpoint.
+    fn fingerprint(&self) -> u64 {
+        checkpoint::fingerprint(
             &self.target,
             self.config,
             self.task.base.as_ref(),
             self.task.focus.as_ref(),
-        );
+        )
+    }
+
+    /// True if `checkpoint` holds a state of this fit.
+    pub(in crate::fit) fn is_kept_in(&self, checkpoint: &Checkpoint) -> bool {
+        checkpoint.is_of(self.fingerprint())
+    }
+
+    /// Goes on from the state in `checkpoint`, if it holds one, and keeps the state there from now on.
+    pub(in crate::fit) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
+        let fingerprint = self.fingerprint();
         match checkpoint.load::<State>(fingerprint)? {
             Some((phase, history, drawing, position, elapsed, descent)) => {
                 // The best file isn't in the checkpoint: it is rendered again from its drawing.

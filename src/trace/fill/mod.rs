@@ -37,14 +37,13 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::areas::{self, LEVEL, Pixel, Pixels, away, distance2, is_opaque, mix};
+use super::areas::{self, Pixel, Pixels, away, distance2, is_opaque, mix};
 use super::contour::{self, Field, Place, between};
 use super::parts::{Part, Parts};
 use super::tracing::Tracing;
 use crate::scene::{Area, Path, Rgb};
 use colors::{CANVAS, NONE};
 pub(super) use compound::Fill;
-use mixtures::Mixture;
 use outline::Surroundings;
 pub(super) use placing::Placing;
 use regions::{Region, Regions};
@@ -73,12 +72,9 @@ pub(super) struct Flat<'a> {
     doubts: Vec<f32>,
 }
 
-/// The share of the pixels that has to be flat, or there are no filled shapes. Drawings of filled shapes have 0.69 to 0.99,
-/// photographs 0.07 to 0.31, scanned line drawings 0.53 to 0.68.
-const LEAST_FLAT: f32 = 0.6;
-/// The share of the squared residual that colours and their mixtures have to explain. Drawings of filled shapes have 0.93 to 1,
-/// photographs 0.30 to 0.77, scanned line drawings 0.86 to 0.93.
-const LEAST_EXPLAINED: f32 = 0.9;
+/// The share of the pixels that has to be flat, or there are no filled shapes, which would take long to find. Drawings of filled shapes
+/// have 0.69 to 0.99, an icon of 32 px 0.54, photographs 0.07 to 0.49, scanned line drawings 0.53 to 0.68.
+const LEAST_FLAT: f32 = 0.5;
 /// More borders than this, px, and than this share of the pixels, are those of levels of shades and of noise, and not of shapes. Of 70
 /// pictures of flat art and of lines of up to a megapixel the most is 40,000 px; three photographs that pass for flat have 65,000 to 130,000,
 /// and 0.18 to 0.24. Areas of these take 4 to 10 times as long as strokes, and up to twice the bytes.
@@ -117,9 +113,6 @@ impl<'a> Flat<'a> {
             return None;
         }
         let mixtures = mixtures::mixtures(&mut colors, &mut labels);
-        if explained(pixels, &mixtures) < LEAST_EXPLAINED {
-            return None;
-        }
         let regions = Regions::of(&colors, mixtures, parts, &doubts);
         let neighbours = regions.neighbours();
         if are_of_texture(&neighbours, pixels.width * pixels.height) {
@@ -487,21 +480,6 @@ impl<'a> Flat<'a> {
         }
         gains
     }
-}
-
-/// The share of the squared residual that lies in pixels that colours or their mixtures explain.
-fn explained(pixels: &Pixels<'_>, mixtures: &[Mixture]) -> f32 {
-    // Half of what begins to be a colour of its own.
-    let limit = 0.5 * mixtures::UNEXPLAINED * LEVEL;
-    let (mut all, mut known) = (0.0, 0.0);
-    for (i, mixture) in mixtures.iter().enumerate() {
-        let residual = distance2(&pixels.target.at(i), &pixels.canvas.at(i));
-        all += residual;
-        if mixture.error < limit * limit {
-            known += residual;
-        }
-    }
-    known / all.max(f32::MIN_POSITIVE)
 }
 
 /// The rings around what covers at least half of a pixel; `shares` are those of all pixels of a page, row by row. They are
