@@ -16,6 +16,8 @@ pub(in crate::fit) struct Drawn {
     pub(in crate::fit) file: Option<RenderedFile>,
     /// True if its marks are where they were seen.
     pub(in crate::fit) is_placed: bool,
+    /// Its cost before the polish, in units of that by strokes alone, if these have been compared.
+    pub(in crate::fit) lead: Option<f64>,
 }
 
 /// The result of the fit: the best file or, if no file was looked at and none is to be `compared`, the drawing as it is.
@@ -59,6 +61,7 @@ pub(in crate::fit) fn finish(mut session: Session<'_>, compared: bool) -> Result
         fit,
         file,
         is_placed,
+        lead: session.history.lead,
     })
 }
 

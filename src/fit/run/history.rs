@@ -22,8 +22,8 @@ pub(in crate::fit) struct History {
     pub(in crate::fit) lost: Vec<u32>,
     /// By how much the price was lowered, dB, because the polished drawing was below the floor.
     pub(in crate::fit) eased_db: f64,
-    /// True once the drawing has been compared with one by strokes alone.
-    pub(in crate::fit) is_raced: bool,
+    /// The cost before the polish, in units of that by strokes alone, if these have been compared.
+    pub(in crate::fit) lead: Option<f64>,
     /// The current stage, or the last one.
     pub(in crate::fit) stage: Option<OpenStage>,
     /// Reason that ended the stages, and in the end the fit.
@@ -75,7 +75,7 @@ impl History {
             traced: [0; 2],
             lost: Vec::new(),
             eased_db: 0.0,
-            is_raced: false,
+            lead: None,
             stage: None,
             stop,
             corrections: Corrections {
