@@ -14,7 +14,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
 use crate::scene::{
     Area, Cap, Mark, Path, PathPiece, PathPoint, Scene, Stage, Stroke, color, distinct_colors,
-    quantum,
+    perceptual_distance, quantum,
 };
 
 /// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
@@ -26,15 +26,20 @@ const QUADS: f64 = 1e-3;
 /// Smaller pieces are traces of rounding, px².
 const SMALLEST: f64 = 2e-3;
 
+/// Colours that are nearer to each other in Oklab are hardly told apart: what CSS Color 4 takes where it maps gamuts.
+const JUST_NOTICEABLE: f32 = 0.02;
+
 /// Cut-outs, for cutters and for one sheet of foil per colour: the visible parts of the scene as one area per colour, which do not
-/// overlap and share their borders. The background is one of them, if there is
+/// overlap and share their borders. Colours that the eye hardly tells apart are one. The background is an area as well, if there is
 /// one; so the scene has none.
 ///
 /// # Errors
 /// [`ErrorKind::Config`](crate::ErrorKind::Config) when a mark is translucent, and
 /// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the outlines cannot be told apart.
 pub fn cut_out(scene: &Scene) -> Result<Scene> {
-    let areas = areas(scene)?.into_iter();
+    let mut marks = outlines(scene)?;
+    unite_alike(&mut marks);
+    let areas = areas_of(scene, &marks)?.into_iter();
     let areas = areas.filter(|area| !area.rings.is_empty());
     let cut = Scene {
         background: None,
@@ -53,9 +58,39 @@ pub fn cut_out(scene: &Scene) -> Result<Scene> {
 /// [`ErrorKind::Config`] when a mark is translucent, since then two colours are seen at a place;
 /// [`ErrorKind::Svg`] when the sweep fails.
 pub(super) fn areas(scene: &Scene) -> Result<Vec<Area>> {
-    let marks = outlines(scene)?;
+    areas_of(scene, &outlines(scene)?)
+}
+
+/// The visible parts of outlines with their colours, back to front.
+fn areas_of(scene: &Scene, marks: &[([u8; 3], BezPath)]) -> Result<Vec<Area>> {
     let colors = distinct_colors(marks.iter().map(|(color, _)| *color));
-    swept(|| seen(&page(scene), &marks, &colors))
+    swept(|| seen(&page(scene), marks, &colors))
+}
+
+/// Gives marks the colour of larger ones that they are hardly told apart from.
+fn unite_alike(marks: &mut [([u8; 3], BezPath)]) {
+    let mut sizes: BTreeMap<[u8; 3], f64> = BTreeMap::new();
+    for (color, outline) in marks.iter() {
+        *sizes.entry(*color).or_default() += outline.area().abs();
+    }
+    let mut by_size: Vec<([u8; 3], f64)> = sizes.into_iter().collect();
+    by_size.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    let mut kept: Vec<[u8; 3]> = Vec::new();
+    let mut shown = BTreeMap::new();
+    for (own, _) in by_size {
+        let away = |other: &[u8; 3]| perceptual_distance(own, *other);
+        let nearest = kept.iter().map(|&other| (away(&other), other));
+        let nearest = nearest.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let alike = nearest.filter(|(away, _)| *away < JUST_NOTICEABLE);
+        let color = alike.map_or(own, |(_, other)| other);
+        if color == own {
+            kept.push(own);
+        }
+        shown.insert(own, color);
+    }
+    marks
+        .iter_mut()
+        .for_each(|(color, _)| *color = shown[color]);
 }
 
 /// The parts within some rings that are farther than `reach` px from these.
@@ -264,6 +299,36 @@ mod tests {
             all.fold(f64::INFINITY, f64::min).sqrt()
         };
         places.map(away).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn colours_that_are_hardly_told_apart_are_cut_out_as_one() {
+        let square = |x: f64, side: f64| {
+            let corners = [[x, 0.0], [x + side, 0.0], [x + side, side], [x, side]];
+            Path::new(
+                corners
+                    .map(|[x, y]| PathPoint::on(Point::new(x, y)))
+                    .to_vec(),
+                true,
+            )
+            .unwrap()
+        };
+        // As antialiasing and compression leave them; the last one is another colour.
+        let colors = [[43, 11, 5], [41, 11, 3], [60, 30, 20]];
+        let marks = [square(0.0, 20.0), square(20.0, 30.0), square(60.0, 10.0)];
+        let marks = marks.into_iter().zip(colors.map(color));
+        let marks = marks.map(|(ring, color)| Area::plain(vec![ring], color, 1.0));
+        let scene = Scene {
+            stages: vec![Stage::from_iter(marks)],
+            ..Scene::empty(80, 40, None)
+        };
+        let cut = cut_out(&scene).unwrap();
+        let cut: Vec<_> = cut
+            .marks()
+            .map(|mark| (mark.color().map(quantum), mark.paths().len()))
+            .collect();
+        // The colour of the larger one, and one outline around both.
+        assert_eq!(cut, [([41, 11, 3], 1), ([60, 30, 20], 1)]);
     }
 
     #[test]

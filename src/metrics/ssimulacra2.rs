@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use super::window::Moments;
 use crate::image::{Image, level};
 use crate::math;
+use crate::scene::linear_light;
 
 const SCALES: usize = 6;
 /// The least side that has one more scale, px.
@@ -219,16 +220,6 @@ impl Iterator for Scales {
             height: self.height,
             pair,
         })
-    }
-}
-
-/// sRGB's transfer function.
-fn linear_light(level: u8) -> f32 {
-    let x = f32::from(level) / 255.0;
-    if x <= 0.04045 {
-        x / 12.92
-    } else {
-        math::powf((x + 0.055) / 1.055, 2.4)
     }
 }
 
