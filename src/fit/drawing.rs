@@ -290,6 +290,11 @@ impl Drawing {
         self.before(self.counters.placed_until)
     }
 
+    /// Number of free marks in stages before the last one.
+    pub(super) fn earlier(&self) -> usize {
+        self.before(self.last_stage())
+    }
+
     /// Number of free marks in earlier stages.
     fn before(&self, stage: usize) -> usize {
         let free = self.stage_of.get(self.frozen.len()..).unwrap_or_default();

@@ -37,6 +37,9 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<Outcome> {
         Phase::StagePolish(_) => grow::stage_polish(session)?,
         Phase::Polish(purpose) => {
             polish::polish(session, purpose)?;
+            if purpose == Purpose::Recover {
+                recover::drop_smudges(session);
+            }
             match purpose {
                 Purpose::Plan if session.config.is_open() => floor::reach_floor(session)?,
                 _ => count::approach_fidelity(session),

@@ -82,7 +82,7 @@ fn remove_hidden(drawing: &mut Drawing) {
 }
 
 /// About how many pixels a stroke covers. An area counts with its bounding box.
-fn pixels(stroke: StrokeRef<'_>) -> f32 {
+pub(super) fn pixels(stroke: StrokeRef<'_>) -> f32 {
     if stroke.is_area() {
         let side = |axis: usize| {
             let along = || stroke.points.iter().map(|p| p[axis]);
