@@ -183,8 +183,11 @@ fn undamaged(picture: &Image) -> Result<Option<Restored>> {
         return Ok(Some(restored));
     }
     let planes = Planes::of(picture);
-    let noise = noise::measure(&planes);
-    noise.map_or(Ok(None), |noise| without_noise(picture, planes, &noise))
+    let halved_chroma = chroma::is_halved(&planes);
+    let noise = noise::measure(&planes, halved_chroma);
+    noise.map_or(Ok(None), |noise| {
+        without_noise(picture, planes, &noise, halved_chroma)
+    })
 }
 
 /// The picture that one of few colours is meant to be.
@@ -213,8 +216,12 @@ fn of_few_colors(picture: &Image, labels: &Labels) -> Result<Option<Restored>> {
 }
 
 /// A picture without noise and, on paper, without shadows and spots; `None` of a photograph, whose texture is as fine as noise.
-fn without_noise(picture: &Image, mut planes: Planes, noise: &Noise) -> Result<Option<Restored>> {
-    let halved_chroma = chroma::is_halved(&planes);
+fn without_noise(
+    picture: &Image,
+    mut planes: Planes,
+    noise: &Noise,
+    halved_chroma: bool,
+) -> Result<Option<Restored>> {
     shrunk(&mut planes, noise);
     if halved_chroma {
         let chromas = chroma::along_luma(&planes);
