@@ -287,9 +287,9 @@ impl Starts<'_> {
         self.part = from..from + (1.0 - from) / (self.trials + 1) as f64;
         self.trials = self.trials.saturating_sub(1);
         let costs = self.costs;
-        let may_win =
+        let mut may_win =
             |session: &mut Session<'_>| Ok(bound.is_none_or(|bound| costs.allow(session, bound)));
-        self.run(task, true, may_win, None)
+        self.run(task, true, &mut may_win, None)
     }
 
     /// Draws the task itself; or `by_strokes` alone, from where it loses against them.
@@ -300,7 +300,7 @@ impl Starts<'_> {
     ) -> Result<Drawn> {
         let task = self.task;
         let Some(by_strokes) = by_strokes else {
-            return self.run(task, false, |_| Ok(true), checkpoint);
+            return self.run(task, false, &mut |_| Ok(true), checkpoint);
         };
         let race = Race {
             by_strokes,
@@ -314,16 +314,16 @@ impl Starts<'_> {
         let is_kept = checkpoint.as_deref().map(|kept| race.is_kept_in(kept));
         let mut is_lost = is_kept.transpose()? == Some(true);
         if !is_lost {
-            let may_win = |session: &mut Session<'_>| {
+            let mut may_win = |session: &mut Session<'_>| {
                 is_lost = race.is_lost_by(session)?;
                 Ok(!is_lost)
             };
-            let drawn = self.run(task, false, may_win, checkpoint.as_deref_mut())?;
+            let drawn = self.run(task, false, &mut may_win, checkpoint.as_deref_mut())?;
             if !is_lost {
                 return Ok(drawn);
             }
         }
-        self.run(by_strokes, false, |_| Ok(true), checkpoint)
+        self.run(by_strokes, false, &mut |_| Ok(true), checkpoint)
     }
 
     /// Draws a task once, or as far as its drawing `may_win`.
@@ -331,7 +331,7 @@ impl Starts<'_> {
         &mut self,
         task: &Task,
         is_trial: bool,
-        mut may_win: impl FnMut(&mut Session<'_>) -> Result<bool>,
+        may_win: &mut dyn FnMut(&mut Session<'_>) -> Result<bool>,
         checkpoint: Option<&mut Checkpoint>,
     ) -> Result<Drawn> {
         let grace = self.watch.grace;

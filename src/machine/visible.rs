@@ -73,11 +73,10 @@ fn unite_alike(marks: &mut [([u8; 3], BezPath)]) {
     for (color, outline) in marks.iter() {
         *sizes.entry(*color).or_default() += outline.area().abs();
     }
-    let mut by_size: Vec<([u8; 3], f64)> = sizes.into_iter().collect();
-    by_size.sort_by(|(_, a), (_, b)| b.total_cmp(a));
     let mut kept: Vec<[u8; 3]> = Vec::new();
     let mut shown = BTreeMap::new();
-    for (own, _) in by_size {
+    while let Some((&own, _)) = sizes.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)) {
+        sizes.remove(&own);
         let away = |other: &[u8; 3]| perceptual_distance(own, *other);
         let nearest = kept.iter().map(|&other| (away(&other), other));
         let nearest = nearest.min_by(|(a, _), (b, _)| a.total_cmp(b));
