@@ -69,27 +69,28 @@ fn areas_of(scene: &Scene, marks: &[([u8; 3], BezPath)]) -> Result<Vec<Area>> {
 
 /// Gives marks the colour of larger ones that they are hardly told apart from.
 fn unite_alike(marks: &mut [([u8; 3], BezPath)]) {
-    let mut sizes: BTreeMap<[u8; 3], f64> = BTreeMap::new();
-    for (color, outline) in marks.iter() {
-        *sizes.entry(*color).or_default() += outline.area().abs();
-    }
+    // 1. The size of each colour.
+    let colors = distinct_colors(marks.iter().map(|(color, _)| *color));
+    let areas: Vec<f64> = marks.iter().map(|(_, path)| path.area().abs()).collect();
+    let sized = colors.into_iter().map(|color| {
+        let own = marks.iter().zip(&areas).filter(|(mark, _)| mark.0 == color);
+        (own.map(|(_, area)| area).sum(), color)
+    });
+    let mut sized: Vec<(f64, [u8; 3])> = sized.collect();
+    // 2. From large to small, those that are told apart from all larger ones.
+    let is_alike = |a: [u8; 3], b: [u8; 3]| perceptual_distance(a, b) < JUST_NOTICEABLE;
     let mut kept: Vec<[u8; 3]> = Vec::new();
-    let mut shown = BTreeMap::new();
-    while let Some((&own, _)) = sizes.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)) {
-        sizes.remove(&own);
-        let away = |other: &[u8; 3]| perceptual_distance(own, *other);
-        let nearest = kept.iter().map(|&other| (away(&other), other));
-        let nearest = nearest.min_by(|(a, _), (b, _)| a.total_cmp(b));
-        let alike = nearest.filter(|(away, _)| *away < JUST_NOTICEABLE);
-        let color = alike.map_or(own, |(_, other)| other);
-        if color == own {
-            kept.push(own);
+    while let Some(i) = (0..sized.len()).max_by(|&i, &k| sized[i].0.total_cmp(&sized[k].0)) {
+        let (_, color) = sized.swap_remove(i);
+        if !kept.iter().any(|&larger| is_alike(larger, color)) {
+            kept.push(color);
         }
-        shown.insert(own, color);
     }
-    marks
-        .iter_mut()
-        .for_each(|(color, _)| *color = shown[color]);
+    // 3. The others become what they are like.
+    for (color, _) in marks {
+        let alike = kept.iter().find(|&&larger| is_alike(larger, *color));
+        *color = alike.copied().unwrap_or(*color);
+    }
 }
 
 /// The parts within some rings that are farther than `reach` px from these.
