@@ -135,6 +135,15 @@ pub(super) fn draw<'a>(
     })
 }
 
+/// Runs the phase that a fit is in.
+fn step(session: &mut Session<'_>) -> Result<()> {
+    let outcome = phase::run(session)?;
+    session.mark_as_final();
+    session.phase = order::next(session.phase, outcome, session.config);
+    session.keep(None);
+    Ok(())
+}
+
 /// The result of a fit that was stopped.
 fn interrupted(fit: Fit) -> Fit {
     Fit {
@@ -352,10 +361,7 @@ impl Starts<'_> {
             session.resume(checkpoint)?;
         }
         while session.phase != Phase::Done && may_win(&mut session)? {
-            let outcome = phase::run(&mut session)?;
-            session.mark_as_final();
-            session.phase = order::next(session.phase, outcome, &task.config);
-            session.keep(None);
+            step(&mut session)?;
         }
         // A drawing that cannot win is compared as it is, at full resolution as all files are.
         if session.phase != Phase::Done {
@@ -449,8 +455,7 @@ impl Race<'_> {
         let unobserved = &mut ();
         let mut rival = self.rival(unobserved)?;
         while rival.phase != FIRST && rival.phase != Phase::Done {
-            let outcome = phase::run(&mut rival)?;
-            rival.phase = order::next(rival.phase, outcome, &self.by_strokes.config);
+            step(&mut rival)?;
         }
         // Its error is that at the resolution of its last stage, to which its edges are fitted so far.
         rival.drawing.thaw();
