@@ -331,6 +331,8 @@ impl Starts<'_> {
             if !is_lost {
                 return Ok(drawn);
             }
+            // What is kept so far is nothing to go on from.
+            checkpoint.as_deref().map_or(Ok(()), Checkpoint::remove)?;
         }
         self.run(by_strokes, false, &mut |_| Ok(true), checkpoint)
     }
@@ -443,7 +445,8 @@ impl Race<'_> {
     /// areas. Takes down its cost in units of theirs.
     fn is_lost_by(&self, session: &mut Session<'_>) -> Result<bool> {
         const FIRST: Phase = Phase::Polish(Purpose::Plan);
-        if session.phase != FIRST || session.history.lead.is_some() {
+        let is_open = session.history.lead.is_none() && session.cut_by().is_none();
+        if session.phase != FIRST || !is_open {
             return Ok(false);
         }
         session.drawing.thaw();

@@ -106,6 +106,17 @@ fn fifty_kills_change_no_byte() {
     }
 }
 
+#[test]
+fn a_fit_that_strokes_alone_have_won_goes_on_with_them() {
+    let place = with_picture(PHOTOGRAPH, 160);
+    let words = stderr(&place.done("fit in.png -o whole.svg -v --threads 1"));
+    // Areas are given up before their polish.
+    let begun = words.lines().filter(|line| line.starts_with("stage 1:"));
+    assert_eq!(begun.count(), 2, "{words}");
+    let (status, kills) = end_of_killed(&place, "fit in.png", 1);
+    assert!(status.success() && kills > 0, "{status}, {kills} kills");
+}
+
 /// Status and standard error.
 fn outcome(mut command: Command) -> (Option<i32>, String) {
     let output = command.output().unwrap();
