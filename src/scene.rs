@@ -23,7 +23,7 @@ mod shape;
 pub use arc::Arc;
 pub(crate) use arc::ArcNumbers;
 pub use band::Band;
-pub(crate) use colors::{distinct_colors, linear_light, perceptual_distance};
+pub(crate) use colors::{distinct_colors, linear_light};
 pub use grid::{MAX_PRECISION, MIN_WIDTH};
 pub(crate) use grid::{UNITS_PER_PX, color, px, quantum, units};
 pub(crate) use mark::counted;

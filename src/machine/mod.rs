@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! visible   marks → the places where each colour is seen: areas that do not overlap
+//! oklab     how different two colours look
 //! hatch     areas → pen lines
 //! pdf, dxf  sheet → bytes of a file
 //! ```
@@ -9,6 +10,8 @@
 mod dxf;
 #[cfg(feature = "cli")]
 mod hatch;
+#[cfg(feature = "cli")]
+mod oklab;
 mod pdf;
 #[cfg(feature = "cli")]
 mod visible;

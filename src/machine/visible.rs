@@ -10,11 +10,12 @@ use std::panic::{self, AssertUnwindSafe};
 use kurbo::{BezPath, CubicBez, PathEl, Point, Shape};
 use linesweeper::topology::{Topology, WindingNumber};
 
+use super::oklab::perceptual_distance;
 use crate::error::{Error, ErrorKind, Result};
 use crate::outline;
 use crate::scene::{
     Area, Cap, Mark, Path, PathPiece, PathPoint, Scene, Stage, Stroke, color, distinct_colors,
-    perceptual_distance, quantum,
+    quantum,
 };
 
 /// Farthest that borders may be moved where outlines touch, px. Files hold a hundredth.
