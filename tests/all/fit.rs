@@ -44,7 +44,7 @@ fn samples_are_drawn_as_they_were_fitted() {
         ("chelsea-cat", 400, 26.0),
         ("coffee-300", 400, 26.0),
         ("rocket-320", 300, 28.0),
-        ("noto-gem", 100, 34.0),
+        ("noto-gem", 24, 34.0),
         ("noto-hibiscus", 200, 30.0),
     ] {
         let config = draft(strokes);
