@@ -40,7 +40,8 @@ const NEAR_IN_NOISE: f32 = 1.25;
 /// Largest noise, upper quartile, of a picture that is clean far from edges, levels. JPEG of flat art has 0 to 0.3, photographs
 /// 0.7 and more.
 const CLEAN: f32 = 0.6;
-/// Least noise in blocks with edges, levels, of which 0.7 have more. Clean flat art has 0 to 0.5, JPEG of quality 90 1.07 and more.
+/// Least noise in blocks with edges, levels, of which 0.7 have more. Clean flat art has 0 to 0.5, small text 0.74, 32 drawings in JPEG
+/// of quality 90 with all of their chroma 0.54 to 2.1, 29 of them 0.8 and more.
 const LEAST_BESIDE: f32 = 0.8;
 /// As [`LEAST_BESIDE`], where chroma is at half the resolution, which tells of compression as well. Of 32 drawings in JPEG of quality 90
 /// and 95, 32 and 29 have more, 29 and 20 more than 0.8; a clean one with that chroma has 0.55.

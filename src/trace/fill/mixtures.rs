@@ -32,7 +32,7 @@ impl Mixture {
 }
 
 /// Root of the squared error over which neither a colour nor a mixture of two explains a pixel, levels. A guess.
-pub(super) const UNEXPLAINED: f32 = 26.0;
+const UNEXPLAINED: f32 = 26.0;
 
 /// All pixels as mixtures of the colours beside them. Colours that nothing explains are added.
 pub(super) fn mixtures(colors: &mut Colors<'_>, labels: &mut [u16]) -> Vec<Mixture> {
