@@ -184,7 +184,7 @@ fn undamaged(picture: &Image) -> Result<Option<Restored>> {
     }
     let planes = Planes::of(picture);
     let halved_chroma = chroma::is_halved(&planes);
-    let noise = noise::measure(&planes, halved_chroma);
+    let noise = noise::measure(&planes);
     noise.map_or(Ok(None), |noise| {
         without_noise(picture, planes, &noise, halved_chroma)
     })

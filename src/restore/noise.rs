@@ -40,12 +40,9 @@ const NEAR_IN_NOISE: f32 = 1.25;
 /// Largest noise, upper quartile, of a picture that is clean far from edges, levels. JPEG of flat art has 0 to 0.3, photographs
 /// 0.7 and more.
 const CLEAN: f32 = 0.6;
-/// Least noise in blocks with edges, levels, of which 0.7 have more. Clean flat art has 0 to 0.5, small text 0.74, 32 drawings in JPEG
-/// of quality 90 with all of their chroma 0.54 to 2.1, 29 of them 0.8 and more.
+/// Least noise in blocks with edges, levels, of which 0.7 have more, where no blocks of JPEG can be told: clean flat art has 0 to 0.5,
+/// small text 0.74.
 const LEAST_BESIDE: f32 = 0.8;
-/// As [`LEAST_BESIDE`], where chroma is at half the resolution, which tells of compression as well. Of 32 drawings in JPEG of quality 90
-/// and 95, 32 and 29 have more, 29 and 20 more than 0.8; a clean one with that chroma has 0.55.
-const LEAST_BESIDE_HALVED: f32 = 0.56;
 
 /// Noise of a picture, RMS in levels of luma.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,8 +83,9 @@ struct Site {
 ///
 /// White noise has about the same deviation everywhere; texture has not. Where flat places are clean but those beside
 /// edges are not, it is what compression or sharpening leaves there.
-pub(super) fn measure(planes: &Planes, has_halved_chroma: bool) -> Option<Noise> {
-    let sites = sites(planes);
+pub(super) fn measure(planes: &Planes) -> Option<Noise> {
+    let grid = grid::offset(planes);
+    let sites = sites(planes, grid.map(Option::unwrap_or_default));
     let count = sites.len();
     let far = |site: &&Site| site.is_far;
     let share = sites.iter().filter(far).count() as f32 / count.max(1) as f32;
@@ -115,12 +113,9 @@ pub(super) fn measure(planes: &Planes, has_halved_chroma: bool) -> Option<Noise>
     }
     // Noise beside edges alone: compression.
     let is_clean = quantile(&far, 0.75) <= CLEAN;
-    let least = if has_halved_chroma {
-        LEAST_BESIDE_HALVED
-    } else {
-        LEAST_BESIDE
-    };
-    (is_clean && beside(0.3) >= least).then(|| Noise {
+    let has_blocks = grid.iter().all(Option::is_some);
+    let is_compressed = has_blocks && beside(0.5) >= LEAST || beside(0.3) >= LEAST_BESIDE;
+    (is_clean && is_compressed).then(|| Noise {
         far: [0.0; TONES],
         near: beside(0.5),
     })
@@ -144,15 +139,14 @@ pub(super) fn median_deviation(planes: &Planes, counts: impl Fn(usize) -> bool +
     quantile(&all, 0.5)
 }
 
-/// The sites of a picture. Nothing is measured where it is not opaque.
-fn sites(planes: &Planes) -> Vec<Site> {
+/// The sites of a picture, of which blocks of JPEG begin at `grid`. Nothing is measured where it is not opaque.
+fn sites(planes: &Planes, grid: [usize; 2]) -> Vec<Site> {
     let (width, height) = (planes.width, planes.height);
     if width <= 2 * REACH || height <= 2 * REACH {
         return Vec::new();
     }
     let step = (width * height).div_ceil(MOST_SITES).isqrt().max(1);
     let rows: Vec<usize> = (REACH..height - REACH).step_by(step).collect();
-    let grid = grid::offset(planes);
     let means = means(planes, step);
     let of_row = |&y: &usize| {
         let columns = (REACH..width - REACH).step_by(step);

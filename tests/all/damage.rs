@@ -3,7 +3,7 @@
 use crate::support::{drawn, of_psnr, picture, rendered, within};
 use strokefit::Result;
 use strokefit::fit::{Background, Colors, Config, Fit};
-use strokefit::image::Image;
+use strokefit::image::{Image, Limits};
 use strokefit::metrics::Quality;
 use strokefit::restore::{self, Damage, Paper, Restored};
 
@@ -122,6 +122,18 @@ fn traces_of_jpeg_are_not_drawn() {
         assert!(fit.scene.len() <= 25, "{} marks", fit.scene.len());
         let db = psnr_db(&fit, &cropped(&logo));
         assert!(db >= 32.5, "{db}");
+    }
+}
+
+#[test]
+fn weak_compression_is_told_by_its_blocks() {
+    // Its noise is as small as what antialiasing leaves beside edges.
+    for quality in [90, 95] {
+        let jpeg = flat_art().encode_jpeg(quality).unwrap();
+        let jpeg = Image::decode(&jpeg, "JPEG", Limits::default()).unwrap();
+        let damage = meant(&jpeg).unwrap().unwrap().damage;
+        assert!((0.5..3.0).contains(&damage.ringing), "{damage:?}");
+        assert_eq!(damage.noise, 0.0);
     }
 }
 
