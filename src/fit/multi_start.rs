@@ -8,7 +8,8 @@
 //! | strokes alone | many areas, or unfaithful ones | gradients and other uneven colours |
 //!
 //! [`is_better`](Starts::is_better) says which of two drawings is better. A start by strokes alone ends when its drawing
-//! [cannot win](Costs::allow) any more, and one with areas [before its polish](Race::is_lost_by) if strokes alone cost less up to there.
+//! [cannot win](Costs::allow) any more. One with areas runs a race before its polish: [strokes alone](Costs::winner) go on in its place if
+//! they cost less up to there.
 
 use std::ops::{ControlFlow, Range};
 use std::time::Duration;
@@ -58,6 +59,9 @@ const COST_AT_LAST: f64 = 0.65;
 const WON: f64 = 0.63;
 /// Strokes alone are drawn instead above this.
 const LOST: f64 = 1.0;
+/// Both run up to where all of their marks are polished: stages take a small part of the time, and the polish of a drawing with areas
+/// most of it where these do not pay.
+const RACE: Phase = Phase::Polish(Purpose::Plan);
 /// The share of a limited time after which a drawing by strokes alone is not begun. A guess.
 const LATEST: f64 = 0.5;
 
@@ -213,7 +217,7 @@ fn by_strokes_alone(config: &Config) -> Option<Config> {
 fn has_doubtful_areas(drawn: &Drawn, doubt: f32) -> bool {
     let scene = &drawn.fit.scene;
     let db = drawn.file.as_ref().map_or(0.0, |file| psnr_db(file.mse()));
-    let are_many = scene.len() > FEW_MARKS && !drawn.is_placed;
+    let are_many = are_many(scene.len(), drawn.is_placed);
     let has_won = drawn.lead.is_some_and(|lead| lead < WON);
     scene.areas().next().is_some() && !has_won && (are_many || (doubt == 0.0 && db < FAITHFUL_DB))
 }
@@ -295,74 +299,13 @@ impl Starts<'_> {
         let from = self.part.end;
         self.part = from..from + (1.0 - from) / (self.trials + 1) as f64;
         self.trials = self.trials.saturating_sub(1);
-        let costs = self.costs;
-        let mut may_win =
-            |session: &mut Session<'_>| Ok(bound.is_none_or(|bound| costs.allow(session, bound)));
-        self.run(task, true, &mut may_win, None)
-    }
-
-    /// Draws the task itself; or `by_strokes` alone, from where it loses against them.
-    fn task_itself(
-        &mut self,
-        by_strokes: Option<&Task>,
-        mut checkpoint: Option<&mut Checkpoint>,
-    ) -> Result<Drawn> {
-        let task = self.task;
-        let Some(by_strokes) = by_strokes else {
-            return self.run(task, false, &mut |_| Ok(true), checkpoint);
-        };
-        let race = Race {
-            by_strokes,
-            picture: self.picture,
-            level: self.level,
-            since: self.since,
-            token: self.watch.token.clone(),
-            costs: self.costs,
-        };
-        // A fit that is resumed goes on with what had won.
-        let is_kept = checkpoint.as_deref().map(|kept| race.is_kept_in(kept));
-        let mut is_lost = is_kept.transpose()? == Some(true);
-        if !is_lost {
-            let mut may_win = |session: &mut Session<'_>| {
-                is_lost = race.is_lost_by(session)?;
-                Ok(!is_lost)
-            };
-            let drawn = self.run(task, false, &mut may_win, checkpoint.as_deref_mut())?;
-            if !is_lost {
-                return Ok(drawn);
-            }
-            // What is kept so far is nothing to go on from.
-            checkpoint.as_deref().map_or(Ok(()), Checkpoint::remove)?;
-        }
-        self.run(by_strokes, false, &mut |_| Ok(true), checkpoint)
-    }
-
-    /// Draws a task once, or as far as its drawing `may_win`.
-    fn run(
-        &mut self,
-        task: &Task,
-        is_trial: bool,
-        may_win: &mut dyn FnMut(&mut Session<'_>) -> Result<bool>,
-        checkpoint: Option<&mut Checkpoint>,
-    ) -> Result<Drawn> {
-        let grace = self.watch.grace;
-        let mut part = Part {
-            observer: &mut *self.watch.observer,
-            span: self.part.clone(),
-            is_trial,
-            has_grace: !grace.is_zero(),
-            is_stopped: &mut self.is_stopped,
-        };
-        let watch = Watch {
-            observer: &mut part,
-            token: self.watch.token.clone(),
-            grace,
-        };
-        let mut session = Session::new(self.picture, task, self.level, watch, self.since)?;
-        if let Some(checkpoint) = checkpoint {
-            session.resume(checkpoint)?;
-        }
-        while session.phase != Phase::Done && may_win(&mut session)? {
+        let (picture, level, since) = (self.picture, self.level, self.since);
+        let (costs, is_compared) = (self.costs, self.is_compared);
+        let mut part = self.part(true);
+        let mut session = Session::new(picture, task, level, part.watch(), since)?;
+        let may_win =
+            |session: &mut Session<'_>| bound.is_none_or(|bound| costs.allow(session, bound));
+        while session.phase != Phase::Done && may_win(&mut session) {
             step(&mut session)?;
         }
         // A drawing that cannot win is compared as it is, at full resolution as all files are.
@@ -370,7 +313,63 @@ impl Starts<'_> {
             session.drawing.thaw();
             session.drawing.sharpen(0.0);
         }
-        finish(session, self.is_compared)
+        finish(session, is_compared)
+    }
+
+    /// Draws the task itself; or `by_strokes` alone, from where it loses against them.
+    fn task_itself(
+        &mut self,
+        by_strokes: Option<&Task>,
+        checkpoint: Option<&mut Checkpoint>,
+    ) -> Result<Drawn> {
+        let (task, picture, level, since) = (self.task, self.picture, self.level, self.since);
+        let (costs, is_compared) = (self.costs, self.is_compared);
+        let token = self.watch.token.clone();
+        let unobserved = &mut ();
+        let mut rival = by_strokes.map(|task| {
+            let watch = Watch {
+                observer: unobserved,
+                token,
+                grace: Duration::ZERO,
+            };
+            (task, watch)
+        });
+        let begin = |task, watch| Session::new(picture, task, level, watch, since);
+        let mut part = self.part(false);
+        let mut session = begin(task, part.watch())?;
+        // 1. A fit that is resumed goes on with what had won.
+        if let Some(checkpoint) = checkpoint {
+            if let Some((by_strokes, watch)) =
+                rival.take_if(|(task, _)| session.is_kept_as(task, checkpoint))
+            {
+                session = begin(by_strokes, watch)?.in_place_of(session);
+            }
+            session.resume(checkpoint)?;
+        }
+        // 2. The race.
+        while session.phase != Phase::Done {
+            if let Some((by_strokes, watch)) = rival.take_if(|_| is_up_to_race(&mut session)) {
+                let mut rival = begin(by_strokes, watch)?;
+                rival.progress.take_over(&mut session.progress);
+                let mut rival = up_to_race(rival)?;
+                session.progress.take_over(&mut rival.progress);
+                session = costs.winner(session, rival);
+            }
+            step(&mut session)?;
+        }
+        finish(session, is_compared)
+    }
+
+    /// The part of the work that the current drawing is.
+    fn part(&mut self, is_trial: bool) -> Part<'_> {
+        Part {
+            observer: &mut *self.watch.observer,
+            token: self.watch.token.clone(),
+            grace: self.watch.grace,
+            span: self.part.clone(),
+            is_trial,
+            is_stopped: &mut self.is_stopped,
+        }
     }
 
     /// True if the observer or the token has stopped a drawing: no further one is to be tried.
@@ -413,60 +412,28 @@ impl Starts<'_> {
     }
 }
 
-/// The race of a task with strokes alone, which both run up to where all of their marks are polished: stages take a small part of the
-/// time, and the polish of a drawing with areas most of it where these do not pay.
-struct Race<'a> {
-    by_strokes: &'a Task,
-    picture: &'a Image,
-    level: Level,
-    since: Instant,
-    token: CancelToken,
-    costs: Costs,
+/// Draws as far as the race.
+fn up_to_race(mut session: Session<'_>) -> Result<Session<'_>> {
+    while session.phase != RACE && session.phase != Phase::Done {
+        step(&mut session)?;
+    }
+    Ok(session)
 }
 
-impl Race<'_> {
-    /// A fit by strokes alone that nobody observes.
-    fn rival<'s>(&'s self, observer: &'s mut ()) -> Result<Session<'s>> {
-        let watch = Watch {
-            observer,
-            token: self.token.clone(),
-            grace: Duration::ZERO,
-        };
-        Session::new(self.picture, self.by_strokes, self.level, watch, self.since)
+/// True of a drawing that is about to run a race: it has many areas that are not all where they were seen.
+fn is_up_to_race(session: &mut Session<'_>) -> bool {
+    let is_open = session.history.lead.is_none() && session.cut_by().is_none();
+    if session.phase != RACE || !is_open {
+        return false;
     }
+    session.drawing.thaw();
+    let marks = session.drawing.free();
+    marks.has_areas() && are_many(marks.len(), session.drawing.is_placed())
+}
 
-    /// True if `checkpoint` keeps a fit by strokes alone, which has won before the fit was cut off.
-    fn is_kept_in(&self, checkpoint: &Checkpoint) -> Result<bool> {
-        let unobserved = &mut ();
-        Ok(self.rival(unobserved)?.is_kept_in(checkpoint))
-    }
-
-    /// True if strokes alone cost less than the drawing of the task, which is about to be polished for the first time and has doubtful
-    /// areas. Takes down its cost in units of theirs.
-    fn is_lost_by(&self, session: &mut Session<'_>) -> Result<bool> {
-        const FIRST: Phase = Phase::Polish(Purpose::Plan);
-        let is_open = session.history.lead.is_none() && session.cut_by().is_none();
-        if session.phase != FIRST || !is_open {
-            return Ok(false);
-        }
-        session.drawing.thaw();
-        let marks = session.drawing.free();
-        let are_doubtful = marks.has_areas() && marks.len() > FEW_MARKS;
-        if !are_doubtful || session.drawing.is_placed() {
-            return Ok(false);
-        }
-        let unobserved = &mut ();
-        let mut rival = self.rival(unobserved)?;
-        while rival.phase != FIRST && rival.phase != Phase::Done {
-            step(&mut rival)?;
-        }
-        // Its error is that at the resolution of its last stage, to which its edges are fitted so far.
-        rival.drawing.thaw();
-        let own = self.costs.so_far(session);
-        let others = self.costs.so_far(&mut rival);
-        session.history.lead = own.zip(others).map(|(own, others)| own / others);
-        Ok(session.history.lead.is_some_and(|lead| lead > LOST))
-    }
+/// True if there are so many marks that strokes alone may be better.
+fn are_many(marks: usize, are_placed: bool) -> bool {
+    marks > FEW_MARKS && !are_placed
 }
 
 /// The costs of drawings of a picture of so many pixels: squared error and bytes, beyond those of a perfect one of no bytes.
@@ -488,13 +455,26 @@ impl Costs {
         self.of(session.drawing.mse(), session.bytes())
     }
 
+    /// The winner of a race, which goes on: `session`, unless strokes alone cost less so far.
+    fn winner<'a>(self, mut session: Session<'a>, mut rival: Session<'a>) -> Session<'a> {
+        // The error of strokes alone is that at the resolution of their last stage, to which their edges are fitted so far.
+        rival.drawing.thaw();
+        let own = self.so_far(&mut session);
+        let others = self.so_far(&mut rival);
+        let lead = own.zip(others).map(|(own, others)| own / others);
+        session.history.lead = lead;
+        let is_lost = rival.cut_by().is_none() && lead.is_some_and(|lead| lead > LOST);
+        match is_lost {
+            true => rival.in_place_of(session),
+            false => session,
+        }
+    }
+
     /// True if the drawing may still come to cost less than `bound`.
     fn allow(&self, session: &mut Session<'_>, bound: f64) -> bool {
         let least = match session.phase {
             // The polish takes most of the error away, so that the bytes decide.
-            Phase::Polish(Purpose::Plan) => {
-                self.of(0.0, (BYTES_AFTER_POLISH * session.bytes() as f64) as usize)
-            }
+            RACE => self.of(0.0, (BYTES_AFTER_POLISH * session.bytes() as f64) as usize),
             Phase::Recover => self.so_far(session).map(|cost| COST_AFTER_POLISH * cost),
             Phase::Restrict(_) => self.so_far(session).map(|cost| COST_AT_LAST * cost),
             _ => None,
@@ -506,18 +486,29 @@ impl Costs {
 /// The observer of one drawing of several: it reports to that of the whole fit, and remembers whether that has stopped it.
 struct Part<'a> {
     observer: &'a mut (dyn Observer + Send),
+    token: CancelToken,
+    /// The last drawing may be finished after a stop, and reports its progress, unless this is zero.
+    grace: Duration,
     /// The part of all work that the drawing is, 0..1.
     span: Range<f64>,
     is_trial: bool,
-    /// True if the last drawing may be finished after a stop, and reports its progress.
-    has_grace: bool,
     is_stopped: &'a mut bool,
+}
+
+impl Part<'_> {
+    fn watch(&mut self) -> Watch<'_> {
+        Watch {
+            token: self.token.clone(),
+            grace: self.grace,
+            observer: self,
+        }
+    }
 }
 
 impl Observer for Part<'_> {
     fn observe(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
         // Don't poll an observer that has stopped the fit.
-        if *self.is_stopped && !self.has_grace {
+        if *self.is_stopped && self.grace.is_zero() {
             return ControlFlow::Break(());
         }
         let Range { start, end } = self.span;

@@ -110,9 +110,11 @@ fn fifty_kills_change_no_byte() {
 fn a_fit_that_strokes_alone_have_won_goes_on_with_them() {
     let place = with_picture(PHOTOGRAPH, 160);
     let words = stderr(&place.done("fit in.png -o whole.svg -v --threads 1"));
-    // Areas are given up before their polish.
-    let begun = words.lines().filter(|line| line.starts_with("stage 1:"));
-    assert_eq!(begun.count(), 2, "{words}");
+    // Areas are drawn as well, and given up before their polish.
+    let begun = |part: &str| words.lines().filter(|line| line.starts_with(part)).count();
+    assert_eq!(begun("stage 1:"), 2, "{words}");
+    place.done("fit in.png -o strokes.svg --marks strokes --threads 1");
+    assert_eq!(read(&place, "whole.svg"), read(&place, "strokes.svg"));
     let (status, kills) = end_of_killed(&place, "fit in.png", 1);
     assert!(status.success() && kills > 0, "{status}, {kills} kills");
 }

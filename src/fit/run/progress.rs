@@ -143,6 +143,14 @@ impl<'a> Tracker<'a> {
         }
     }
 
+    /// Reports to the observer of `other` from now on, and `other` to its own. What is done never decreases.
+    pub(in crate::fit) fn take_over(&mut self, other: &mut Self) {
+        std::mem::swap(&mut self.watch, &mut other.watch);
+        self.asked |= other.asked;
+        let fraction = &mut self.position.fraction;
+        *fraction = fraction.max(other.position.fraction);
+    }
+
     /// Why the fit has to stop now, if it has to.
     pub(in crate::fit) fn stopped(&self) -> Option<Stop> {
         self.stopped

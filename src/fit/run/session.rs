@@ -392,24 +392,34 @@ impl<'a> Session<'a> {
         self.progress.stopped().or(hurried)
     }
 
-    /// Identifies the fit in a checkpoint.
-    fn fingerprint(&self) -> u64 {
+    /// Identifies a fit of `task` to the same picture in a checkpoint.
+    fn fingerprint(&self, task: &Task) -> u64 {
         checkpoint::fingerprint(
             &self.target,
-            self.config,
-            self.task.base.as_ref(),
-            self.task.focus.as_ref(),
+            &task.config,
+            task.base.as_ref(),
+            task.focus.as_ref(),
         )
     }
 
-    /// True if `checkpoint` holds a state of this fit.
-    pub(in crate::fit) fn is_kept_in(&self, checkpoint: &Checkpoint) -> bool {
-        checkpoint.is_of(self.fingerprint())
+    /// True if `checkpoint` holds a state of a fit of `task` to the same picture.
+    pub(in crate::fit) fn is_kept_as(&self, task: &Task, checkpoint: &Checkpoint) -> bool {
+        checkpoint.is_of(self.fingerprint(task))
+    }
+
+    /// Goes on in the place of `other`, a fit to the same picture: with its observer and its checkpoint.
+    pub(in crate::fit) fn in_place_of(mut self, mut other: Self) -> Self {
+        self.progress.take_over(&mut other.progress);
+        self.keeper = other.keeper.map(|keeper| Keeper {
+            fingerprint: self.fingerprint(self.task),
+            ..keeper
+        });
+        self
     }
 
     /// Goes on from the state in `checkpoint`, if it holds one, and keeps the state there from now on.
     pub(in crate::fit) fn resume(&mut self, checkpoint: &'a mut Checkpoint) -> Result<()> {
-        let fingerprint = self.fingerprint();
+        let fingerprint = self.fingerprint(self.task);
         match checkpoint.load::<State>(fingerprint)? {
             Some((phase, history, drawing, position, elapsed, descent)) => {
                 // The best file isn't in the checkpoint: it is rendered again from its drawing.
