@@ -9,6 +9,7 @@ mod color_difference;
 mod displacement;
 mod distances;
 mod hidden;
+mod page;
 
 use std::time::Instant;
 
@@ -342,8 +343,12 @@ impl<'a> Case<'a> {
     }
 
     fn judged(&self, by: &str, svg: &str) -> Result<CaseEntry> {
+        let seen = verify::fidelity(svg, &self.truth.picture)?;
         let mut entry = CaseEntry {
             found: contents(svg)?,
+            ssimulacra2: Some(seen.ssimulacra2),
+            details_kept: seen.details_kept,
+            page_levels: page::levels(svg, &self.picture)?,
             psnr_db: Some(decibels(svg, &self.picture)?),
             truth_db: Some(decibels(svg, &self.truth.picture)?),
             input_db: Some(psnr(&self.truth.picture, &self.picture)?),

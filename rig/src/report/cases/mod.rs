@@ -76,6 +76,12 @@ pub struct CaseEntry {
     pub psnr_db: Option<f64>,
     /// Fidelity of that file to the picture before it was damaged, dB.
     pub truth_db: Option<f64>,
+    /// SSIMULACRA2 of that file beside the picture before it was damaged.
+    pub ssimulacra2: Option<f64>,
+    /// Share of the small things of the picture before it was damaged that are kept.
+    pub details_kept: Option<f64>,
+    /// Largest difference of a channel where the picture has its most common colours, means, levels of 255.
+    pub page_levels: Option<f64>,
     /// Fidelity of the artist's file to the picture before it was damaged, dB.
     pub artist_db: Option<f64>,
     /// Fidelity of the picture to itself before it was damaged, dB; `None` in a report without damage, as JSON has no infinity.
@@ -243,7 +249,7 @@ fn drawn(e: &CaseEntry, of: fn(&Contents) -> usize) -> String {
     e.original.map_or_else(String::new, |c| of(&c).to_string())
 }
 
-const COLUMNS: [Column<CaseEntry>; 33] = [
+const COLUMNS: [Column<CaseEntry>; 36] = [
     ("drawing", |e| e.drawing.clone()),
     ("family", |e| e.family.clone()),
     ("side_px", |e| e.side_px.to_string()),
@@ -264,6 +270,9 @@ const COLUMNS: [Column<CaseEntry>; 33] = [
     ("found_bytes", |e| e.found.bytes.to_string()),
     ("psnr_db", |e| optional(e.psnr_db, 2)),
     ("truth_db", |e| optional(e.truth_db, 2)),
+    ("ssimulacra2", |e| optional(e.ssimulacra2, 1)),
+    ("details_kept", |e| optional(e.details_kept, 3)),
+    ("page_levels", |e| optional(e.page_levels, 1)),
     ("artist_db", |e| optional(e.artist_db, 2)),
     ("input_db", |e| optional(e.input_db, 2)),
     ("delta_e00", |e| optional(e.delta_e, 3)),
@@ -302,6 +311,9 @@ mod tests {
             found: contents(elements),
             psnr_db: Some(40.0),
             truth_db: Some(42.0),
+            ssimulacra2: Some(80.0),
+            details_kept: Some(0.9),
+            page_levels: Some(1.0),
             artist_db: Some(39.0),
             delta_e: Some(0.5),
             displacement_px: Some(0.125),
@@ -369,7 +381,7 @@ mod tests {
     fn the_table_has_a_row_for_each_case_and_the_json_reads_back() {
         let report = CasesReport::new(vec![found(OWN, 128, 3)]);
         let csv = report.table().csv();
-        let row = "noto__hole,noto,128,clean,strokefit,2,3,2,3,8,12,20,30,40,60,200,300,40.00,42.00,39.00,0.500,";
+        let row = "noto__hole,noto,128,clean,strokefit,2,3,2,3,8,12,20,30,40,60,200,300,40.00,42.00,80.0,0.900,1.0,39.00,0.500,";
         assert!(csv.lines().nth(1).unwrap().starts_with(row), "{csv}");
         let text = serde_json::to_string(&report).unwrap();
         assert_eq!(serde_json::from_str::<CasesReport>(&text).unwrap(), report);

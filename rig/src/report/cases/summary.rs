@@ -50,7 +50,7 @@ fn middle(values: Vec<f64>, digits: usize) -> String {
     optional(Some(median(values)).filter(|m| m.is_finite()), digits)
 }
 
-fn columns<'a>() -> [Column<Group<'a>>; 27] {
+fn columns<'a>() -> [Column<Group<'a>>; 31] {
     [
         ("drawings", |g| g.cases.len().to_string()),
         ("recognised", |g| {
@@ -95,6 +95,14 @@ fn columns<'a>() -> [Column<Group<'a>>; 27] {
         }),
         ("dB, median", |g| g.median(|e| e.truth_db, 1)),
         ("dB, mean", |g| g.mean(|e| e.truth_db, 1)),
+        ("SSIMULACRA2, median", |g| g.median(|e| e.ssimulacra2, 1)),
+        ("SSIMULACRA2, least", |g| {
+            optional(g.values(|e| e.ssimulacra2).into_iter().reduce(f64::min), 1)
+        }),
+        ("details kept, median", |g| g.median(|e| e.details_kept, 2)),
+        ("page off by, levels, most", |g| {
+            optional(g.values(|e| e.page_levels).into_iter().reduce(f64::max), 1)
+        }),
         ("dB − artist's, median", |g| {
             g.median(CaseEntry::beyond_artist_db, 1)
         }),
@@ -254,6 +262,9 @@ mod tests {
         assert_eq!(cell(&table, 2, "nearer"), "1");
         for (head, expected) in [
             ("dB", "42.0"),
+            ("SSIMULACRA2 least", "80.0"),
+            ("details kept", "0.90"),
+            ("page off by", "1.0"),
             ("dB − artist's", "3.0"),
             ("ΔE00", "0.50"),
             ("edges", "0.125"),
