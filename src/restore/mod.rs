@@ -3,6 +3,7 @@
 //! ```text
 //! labels     the colours of a picture that has few
 //! stairs     smooth borders, of which stairs are left for want of antialiasing
+//! aliased    the few colours of a picture without antialiasing that was compressed
 //! grid       where the blocks of a JPEG begin
 //! noise      how far pixels are from flat places, far from edges and beside them
 //! shrink     the picture without what noise explains
@@ -12,6 +13,7 @@
 //! light      uneven light on paper, and its spots
 //! ```
 
+mod aliased;
 mod chroma;
 mod clip;
 mod cosine;
@@ -246,7 +248,13 @@ fn without_noise(
     if uneven_light {
         picture = planes.image()?;
     }
+    // What was compressed may have had stairs before.
+    let labels = aliased::labels(&planes, noise.near);
+    let smoothed = labels.map_or(Ok(None), |labels| stairs::smoothed(&labels))?;
+    let stairs = smoothed.is_some();
+    let picture = smoothed.unwrap_or(picture);
     let damage = Damage {
+        stairs,
         noise: noise.most(),
         ringing: noise.near,
         halved_chroma,
