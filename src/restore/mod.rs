@@ -94,9 +94,10 @@ impl Damage {
         } else {
             0.0
         };
+        let of_stairs = if self.stairs { stairs::DOUBT } else { 0.0 };
         Doubt {
             far: (self.noise / 2.0).max(of_means),
-            near: self.ringing,
+            near: self.ringing.max(of_stairs),
         }
     }
 }

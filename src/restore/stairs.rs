@@ -10,6 +10,10 @@ use super::labels::{Color, Labels};
 use crate::error::Result;
 use crate::image::Image;
 
+/// Distance of smooth borders from the truth, RMS in levels beside them: of 0, 4, 8, 12, 16 and 24, with 8 drawings of six clip arts and of
+/// lines come nearest to antialiased ones, in a fifth fewer bytes than with 0.
+pub(super) const DOUBT: f32 = 8.0;
+
 /// Samples of a pixel across and down.
 const SAMPLES: usize = 4;
 
