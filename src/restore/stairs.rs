@@ -2,7 +2,8 @@
 //!
 //! The border between two colours runs from cell to cell, a cell having its corners in the centres of four pixels. Its node
 //! in each cell is free to move there, so that no pixel's centre comes to lie on its other side. Nodes move to the middle of their
-//! neighbours until the border is as smooth as that allows: constrained elastic surface nets, Gibson (1998).
+//! neighbours until the border is as smooth as that allows: constrained elastic surface nets, Gibson (1998). Nodes of corners between
+//! level and upright runs stay.
 
 use rayon::prelude::*;
 
@@ -25,6 +26,8 @@ const MOST_LONELY: f32 = 0.1;
 const LEAST_SQUARE: usize = 2;
 /// Farthest that a border moves, px along an axis. Below 0.5 the centres of pixels keep their colours.
 const REACH: f32 = 0.45;
+/// Least length of the runs before and after a corner, px. Of stairs one of them has a pixel or two.
+const CORNER: usize = 4;
 /// Rounds of smoothing. A guess.
 const ROUNDS: usize = 60;
 /// Most pixels of a speck, whose border stays: smooth ones shrink to nothing. A guess.
@@ -114,10 +117,30 @@ impl Labels {
         [[-1, -1], [0, -1], [0, 0], [-1, 0]].map(|[dx, dy]| self.pixel_at(x + dx, y + dy))
     }
 
+    /// True if a border turns in a cell and runs straight on for long before and after that. A turn of stairs is followed by a short run,
+    /// whatever line they stand for.
+    fn is_corner(&self, cell: usize, sides: [bool; 4]) -> bool {
+        let [columns, rows] = self.cells();
+        let [above, right, below, left] = sides;
+        let runs_on = |side: usize| {
+            let on = |k: usize| {
+                let [x, y] = SIDES[side].map(|step| k as isize * step as isize);
+                let x = (cell % columns).checked_add_signed(x);
+                let y = (cell / columns).checked_add_signed(y);
+                let (x, y) = (x.filter(|x| *x < columns)?, y.filter(|y| *y < rows)?);
+                let straight = std::array::from_fn(|other| other % 2 == side % 2);
+                Some(crossed(&self.corners(y * columns + x)) == straight)
+            };
+            (1..=CORNER).all(|k| on(k) == Some(true))
+        };
+        let turns = above != below && left != right;
+        turns && (0..4).filter(|side| sides[*side]).all(runs_on)
+    }
+
     /// The node of each cell, relative to its middle, px.
     fn nodes(&self, specks: &[bool]) -> Vec<[f32; 2]> {
         let [columns, rows] = self.cells();
-        // Cells that a border runs through, other than those of specks.
+        // Cells that a border runs through, other than those of specks and of corners.
         let mut nodes = vec![[0.0_f32; 2]; columns * rows];
         let is_free = |cell: &usize| {
             self.corner_pixels(*cell)
@@ -127,7 +150,7 @@ impl Labels {
         let borders: Vec<(usize, [bool; 4])> = (0..nodes.len())
             .filter(is_free)
             .map(|cell| (cell, crossed(&self.corners(cell))))
-            .filter(|(_, crossed)| crossed.contains(&true))
+            .filter(|(cell, crossed)| crossed.contains(&true) && !self.is_corner(*cell, *crossed))
             .collect();
         let beside = |cell: usize| {
             let row = columns as isize;

@@ -3,7 +3,9 @@
 use crate::support::{drawn, of_psnr, picture, rendered, within};
 use strokefit::Result;
 use strokefit::fit::{Background, Colors, Config, Fit};
-use strokefit::image::{Image, Limits};
+use strokefit::image::Image;
+#[cfg(feature = "cli")]
+use strokefit::image::Limits;
 use strokefit::metrics::Quality;
 use strokefit::restore::{self, Damage, Paper, Restored};
 
@@ -40,6 +42,13 @@ fn noisy(clean: &Image, levels: f32) -> Image {
         (clean.planes()[c][i] + noise(3 * i + c)).clamp(0.0, 1.0)
     })
     .unwrap()
+}
+
+/// A picture after a JPEG of some quality, which the program alone writes.
+#[cfg(feature = "cli")]
+fn compressed(picture: &Image, quality: u8) -> Image {
+    let jpeg = picture.encode_jpeg(quality).unwrap();
+    Image::decode(&jpeg, "JPEG", Limits::default()).unwrap()
 }
 
 /// Discs and bars of flat colours on white, antialiased.
@@ -125,13 +134,15 @@ fn traces_of_jpeg_are_not_drawn() {
     }
 }
 
+#[cfg(feature = "cli")]
 #[test]
 fn weak_compression_is_told_by_its_blocks() {
     // Its noise is as small as what antialiasing leaves beside edges.
     for quality in [90, 95] {
-        let jpeg = flat_art().encode_jpeg(quality).unwrap();
-        let jpeg = Image::decode(&jpeg, "JPEG", Limits::default()).unwrap();
-        let damage = meant(&jpeg).unwrap().unwrap().damage;
+        let damage = meant(&compressed(&flat_art(), quality))
+            .unwrap()
+            .unwrap()
+            .damage;
         assert!((0.5..3.0).contains(&damage.ringing), "{damage:?}");
         assert_eq!(damage.noise, 0.0);
     }
@@ -216,6 +227,50 @@ fn stairs_of_one_bit_become_smooth() {
     assert!(!fit.scene.marks().any(|mark| is_white(mark.color())));
     let db = psnr_db(&fit, &picture("smooth2.png"));
     assert!(db >= 34.0, "{db}");
+}
+
+#[cfg(feature = "cli")]
+#[test]
+fn stairs_that_were_compressed_become_smooth() {
+    let clean = flat_art();
+    let colors = [
+        [1.0; 3],
+        [0.8, 0.2, 0.2],
+        [0.2, 0.5, 0.8],
+        [0.95, 0.75, 0.2],
+    ];
+    // Each pixel has the colour of a disc or of the page.
+    let aliased = Image::from_fn(128, 128, 3, |x, y, c| {
+        let own = clean.planes().each_ref().map(|plane| plane[y * 128 + x]);
+        let apart =
+            |color: &[f32; 3]| -> f32 { color.iter().zip(own).map(|(a, b)| (a - b).powi(2)).sum() };
+        let nearest = colors.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        nearest.unwrap()[c]
+    });
+    let fit = default(&compressed(&aliased.unwrap(), 90));
+    let damage = fit.damage.unwrap();
+    assert!(damage.stairs && damage.ringing > 1.0, "{damage:?}");
+    assert!(fit.scene.len() <= 4, "{} marks", fit.scene.len());
+    let db = psnr_db(&fit, &clean);
+    assert!(db > 33.0, "{db}");
+}
+
+#[test]
+fn corners_between_long_runs_are_no_stairs() {
+    // A grid of lines of a pixel, and a ring.
+    let ring =
+        |x: usize, y: usize| (38.0..41.0).contains(&(x as f32 - 64.2).hypot(y as f32 - 63.6));
+    let dark = |x: usize, y: usize| x % 16 == 8 || y % 16 == 8 || ring(x, y);
+    let picture = Image::from_fn(128, 128, 1, |x, y, _| f32::from(!dark(x, y))).unwrap();
+    let found = meant(&picture).unwrap().unwrap();
+    assert!(found.damage.stairs);
+    let [own, restored] = [&picture, &found.picture].map(|p| p.planes()[0].clone());
+    // Crossings far from the ring.
+    for (x, y) in [(8, 8), (24, 24), (120, 120), (104, 120)] {
+        for i in [0, 1, 2].map(|k| (y - 1 + k) * 128 + x - 1) {
+            assert_eq!(own[i..i + 3], restored[i..i + 3], "{x} {y}");
+        }
+    }
 }
 
 #[test]
