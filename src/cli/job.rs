@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use strokefit::fit::{self, DEFAULT_STROKES, Fit, Observer, PIXELS_PER_STROKE, Progress, Stop};
 use strokefit::image::Image;
-use strokefit::metrics::{Agreement, psnr_db};
+use strokefit::metrics::{Agreement, Quality, psnr_db};
 use strokefit::report::{self, Event, FitReport, Input, Judged, Run, Usage};
 use strokefit::restore::Paper;
 use strokefit::scene::{Dropped, Marks};
@@ -194,10 +194,9 @@ impl<'a> Job<'a> {
                 "{name}: more strokes would pay, but {strokes} are the most unless --strokes or --quality asks for more"
             ));
         }
-        if is_open && is_lost(&drawn.judged) {
+        if let Some(seen) = lost(&drawn.judged).filter(|_| is_open) {
             verbosity.say(format_args!(
-                "{name}: much of the picture is lost (SSIMULACRA2 {:.0}): --quality {CLOSE} keeps more",
-                verdict.fidelity.ssimulacra2
+                "{name}: much of the picture is lost (SSIMULACRA2 {seen:.0}): --quality {CLOSE} keeps more"
             ));
         }
         if config.paper == Paper::White && !is_relit(fit) {
@@ -264,11 +263,14 @@ const LOST: (f64, f64) = (40.0, 0.4);
 /// A quality with which photographs have a SSIMULACRA2 of 65 to 80.
 const CLOSE: f64 = 40.0;
 
-/// True if a drawing has little of its picture, but something.
-fn is_lost(judged: &Judged) -> bool {
-    let fidelity = &judged.verdict.fidelity;
+/// The SSIMULACRA2 of a drawing that has little of its picture, but something. Damage that was left out is not lost.
+fn lost(judged: &Judged) -> Option<f64> {
+    let (fit, fidelity) = (&judged.fit, &judged.verdict.fidelity);
+    let meant = fit.meant.as_ref().filter(|_| fidelity.ssimulacra2 < LOST.0);
+    let beside_meant = meant.and_then(|meant| Quality::between(meant, &fit.soft).ok());
+    let seen = beside_meant.map_or(fidelity.ssimulacra2, |quality| quality.ssimulacra2);
     let has_few_details = fidelity.details_kept.is_some_and(|kept| kept < LOST.1);
-    !is_blank(judged) && (fidelity.ssimulacra2 < LOST.0 || has_few_details)
+    (!is_blank(judged) && (seen < LOST.0 || has_few_details)).then_some(seen)
 }
 
 /// True if the light on a page, or the colour of its paper, is not that of the picture.
