@@ -1,5 +1,5 @@
 //! Uneven light on paper, and its spots: a smooth field, by which a scanned or photographed page is divided. Paper keeps its own colour,
-//! unless it is to be white.
+//! unless it is to be white. Light falls on what is drawn as well: what is drawn on a gradient has more tones without it.
 
 use std::ops::Range;
 
@@ -27,6 +27,9 @@ const LEAST_NEAR: f32 = 0.004;
 const LIKE: f32 = 0.03;
 /// Least share of paper in a page.
 const LEAST_PAPER: f32 = 0.7;
+/// What is drawn on a page has at least so many times fewer tones without the light, which falls on all of it. Of 16 clip arts in uneven
+/// light it has 2.1 to 5.8 times fewer, of ink and pencil about as many; of the same clip arts on a gradient 0.15 to 0.6 times.
+const FEWER_TONES: f32 = 0.8;
 /// Least luma of paper, levels.
 const LEAST_LUMA: f32 = 90.0;
 /// Least range of the luma of paper in uneven light, levels.
@@ -96,14 +99,29 @@ impl Page {
         let luma = &planes.planes[0];
         let is_paper = |i: &usize| (luma[*i] / light[*i] - 1.0).abs() < LIKE;
         let paper: Vec<usize> = (0..light.len()).filter(is_paper).collect();
-        let is_page =
-            range[0] >= LEAST_LUMA && paper.len() as f32 >= LEAST_PAPER * light.len() as f32;
-        is_page.then_some(Self {
+        let is_mostly_paper = paper.len() as f32 >= LEAST_PAPER * light.len() as f32;
+        let page = Self {
             light,
             range,
             mean,
             paper,
-        })
+        };
+        let is_page =
+            range[0] >= LEAST_LUMA && is_mostly_paper && page.fewer_tones(luma) >= FEWER_TONES;
+        is_page.then_some(page)
+    }
+
+    /// How many times fewer tones what is drawn has without the light; 1 if nothing is drawn.
+    fn fewer_tones(&self, luma: &[f32]) -> f32 {
+        let mut is_drawn = vec![true; luma.len()];
+        self.paper.iter().for_each(|i| is_drawn[*i] = false);
+        let drawn = (0..luma.len()).filter(|i| is_drawn[*i]);
+        let even = |i: usize| luma[i] * self.mean / self.light[i];
+        let own = concentration(drawn.clone().map(|i| luma[i]));
+        match own {
+            0.0 => 1.0,
+            own => concentration(drawn.map(even)) / own,
+        }
     }
 
     /// Divides a page by its light, so that it has the mean one.
@@ -129,6 +147,19 @@ impl Page {
             spread: 1.48 * away,
         }
     }
+}
+
+/// The sum of the squares of the shares of tones of four levels: one in so many, if all are as common.
+fn concentration(values: impl Iterator<Item = f32>) -> f32 {
+    let mut tones = [0.0_f32; 64];
+    for value in values {
+        tones[(value / 4.0).clamp(0.0, 63.0) as usize] += 1.0;
+    }
+    let count = tones.iter().sum::<f32>().max(1.0);
+    tones
+        .iter()
+        .map(|tone| (tone / count) * (tone / count))
+        .sum()
 }
 
 /// Paper in one plane.

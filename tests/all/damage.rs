@@ -323,6 +323,31 @@ fn ink_on_a_photographed_page_is_ink() {
 }
 
 #[test]
+fn a_gradient_below_flat_things_is_no_light() {
+    let page = |is_lit: bool| {
+        let picture = Image::from_fn(160, 160, 3, |x, y, c| {
+            let light = 0.95 - 0.3 * y as f32 / 160.0;
+            let within = |[cx, cy]: [f32; 2]| (x as f32 - cx).hypot(y as f32 - cy) < 24.0;
+            let color = [0.9, 0.4, 0.35][c];
+            match [[50.0, 45.0], [105.0, 110.0]].into_iter().any(within) {
+                true => color * if is_lit { light } else { 0.8 },
+                false => light,
+            }
+        });
+        noisy(&picture.unwrap(), 3.0)
+    };
+    let is_light = |is_lit| {
+        let found = meant(&page(is_lit)).unwrap();
+        found.is_some_and(|found| found.damage.uneven_light)
+    };
+    assert!(is_light(true), "light falls on all of a page");
+    assert!(
+        !is_light(false),
+        "what is drawn on a gradient is as light everywhere"
+    );
+}
+
+#[test]
 fn spots_of_scanned_paper_are_no_content() {
     // Blots a third of the page wide, in light that falls off by 4 %.
     let blot = |x: usize, y: usize| {
