@@ -3,10 +3,6 @@
 //! Of an antialiased edge a third of the pixels lie between the colours of its sides, of an aliased one none. So each pixel has one of a
 //! few colours again, and the picture stairs that can be [smoothed](super::stairs).
 
-use std::collections::BTreeMap;
-
-use rayon::prelude::*;
-
 use super::labels::{Color, Labels};
 use super::noise::EDGE_RANGE;
 use super::planes::Planes;
@@ -16,6 +12,8 @@ use super::planes::Planes;
 const MOST_BETWEEN: f32 = 0.09;
 /// Side of a cell of colours that are taken as one where they are counted, levels. A guess.
 const CELL: f32 = 8.0;
+/// Cells of a channel.
+const CELLS: usize = 32;
 /// Least distance of two colours, levels; and in units of the noise beside edges. Guesses.
 const LEAST_APART: f32 = 16.0;
 const APART: f32 = 6.0;
@@ -33,16 +31,21 @@ pub(super) fn labels(planes: &Planes, noise: f32) -> Option<Labels> {
         return None;
     }
     let palette = palette(planes, LEAST_APART.max(APART * noise));
-    let of = (0..planes.planes[0].len()).into_par_iter().map(|pixel| {
+    let nearest = |pixel: usize| {
         let color = planes.planes.each_ref().map(|plane| plane[pixel]);
-        let nearest = (0..palette.len())
-            .min_by(|a, b| apart(palette[*a], color).total_cmp(&apart(palette[*b], color)));
-        nearest.unwrap_or(0) as u16
-    });
+        let mut nearest = (0, f32::INFINITY);
+        for (label, known) in (0..).zip(&palette) {
+            let distance = apart(*known, color);
+            if distance < nearest.1 {
+                nearest = (label, distance);
+            }
+        }
+        nearest.0
+    };
     Some(Labels {
         width: planes.width,
         height: planes.height,
-        of: of.collect(),
+        of: (0..planes.planes[0].len()).map(nearest).collect(),
         colors: colors(&palette)?,
     })
 }
@@ -64,23 +67,21 @@ fn colors(palette: &[[f32; 3]]) -> Option<Vec<Color>> {
 /// The share of the pixels beside edges that lie between the sides.
 fn between(planes: &Planes) -> f32 {
     let (luma, width) = (&planes.planes[0], planes.width);
-    let rows: Vec<&[f32]> = luma.chunks_exact(width).collect();
-    let of_rows = |rows: &[&[f32]]| {
-        let mut counts = [0_usize; 2];
+    let [mut between, mut all] = [0_usize; 2];
+    for y in 1..planes.height.saturating_sub(1) {
         for x in 1..width.saturating_sub(1) {
-            let around = rows.iter().flat_map(|row| &row[x - 1..=x + 1]);
-            let [low, high] = around.fold([f32::MAX, f32::MIN], |[low, high], v| {
-                [low.min(*v), high.max(*v)]
-            });
-            let range = high - low;
-            let place = (rows[1][x] - low) / range;
-            counts[0] += usize::from(range >= EDGE_RANGE && (0.25..0.75).contains(&place));
-            counts[1] += usize::from(range >= EDGE_RANGE);
+            let [mut low, mut high] = [f32::MAX, f32::MIN];
+            for row in y - 1..=y + 1 {
+                for v in &luma[row * width + x - 1..=row * width + x + 1] {
+                    (low, high) = (low.min(*v), high.max(*v));
+                }
+            }
+            let place = (luma[y * width + x] - low) / (high - low);
+            let has_edge = high - low >= EDGE_RANGE;
+            between += usize::from(has_edge && (0.25..0.75).contains(&place));
+            all += usize::from(has_edge);
         }
-        counts
-    };
-    let sum = |a: [usize; 2], b: [usize; 2]| [a[0] + b[0], a[1] + b[1]];
-    let [between, all] = rows.par_windows(3).map(of_rows).reduce(|| [0; 2], sum);
+    }
     // Without edges there is nothing to tell by.
     if all == 0 {
         1.0
@@ -91,28 +92,34 @@ fn between(planes: &Planes) -> f32 {
 
 /// The most common colours that lie so far apart, the most common one first.
 fn palette(planes: &Planes, least_apart: f32) -> Vec<[f32; 3]> {
+    // The sums of the colours of each cell, and their numbers.
+    let mut cells = vec![[0.0_f64; 4]; CELLS * CELLS * CELLS];
     let count = planes.planes[0].len();
-    let mut cells: BTreeMap<[i32; 3], ([f64; 3], usize)> = BTreeMap::new();
     for pixel in 0..count {
         let color = planes.planes.each_ref().map(|plane| plane[pixel]);
-        let (sum, count) = cells
-            .entry(color.map(|v| (v / CELL).round() as i32))
-            .or_default();
-        sum.iter_mut()
-            .zip(color)
-            .for_each(|(sum, v)| *sum += f64::from(v));
-        *count += 1;
+        // Chroma begins at −128.
+        let [luma, blue, red] = [color[0], color[1] + 128.0, color[2] + 128.0]
+            .map(|v| ((v / CELL) as usize).min(CELLS - 1));
+        let cell = &mut cells[(luma * CELLS + blue) * CELLS + red];
+        for (sum, value) in cell.iter_mut().zip([color[0], color[1], color[2], 1.0]) {
+            *sum += f64::from(value);
+        }
     }
-    let mut cells: Vec<_> = cells.into_values().collect();
-    cells.sort_by_key(|(_, count)| usize::MAX - count);
     let mut palette: Vec<[f32; 3]> = Vec::new();
-    for (sum, cell) in cells {
-        let color = sum.map(|sum| (sum / cell as f64) as f32);
-        let is_new = palette
-            .iter()
-            .all(|known| apart(*known, color) >= least_apart * least_apart);
-        if is_new && cell as f32 >= LEAST_SHARE * count as f32 && palette.len() < MOST_COLORS {
-            palette.push(color);
+    while palette.len() < MOST_COLORS {
+        let mut most = (LEAST_SHARE * count as f32, None);
+        for [luma, blue, red, cell] in &cells {
+            if *cell as f32 > most.0 {
+                let color = [luma, blue, red].map(|sum| (sum / cell) as f32);
+                let is_far = |known: &[f32; 3]| apart(*known, color) >= least_apart * least_apart;
+                if palette.iter().all(is_far) {
+                    most = (*cell as f32, Some(color));
+                }
+            }
+        }
+        match most.1 {
+            Some(color) => palette.push(color),
+            None => break,
         }
     }
     palette
