@@ -27,7 +27,7 @@ use distances::Distances;
 use hidden::Reaches;
 use strokefit::fit::{Config, Fitter};
 use strokefit::image::Image;
-use strokefit::metrics::psnr;
+use strokefit::metrics::{Quality, psnr};
 use strokefit::scene::Marks;
 use strokefit::verify::{self, Size};
 use strokefit::{Error, Result};
@@ -343,14 +343,16 @@ impl<'a> Case<'a> {
     }
 
     fn judged(&self, by: &str, svg: &str) -> Result<CaseEntry> {
-        let seen = verify::fidelity(svg, &self.truth.picture)?;
+        // The clean picture has the size of the damaged one.
+        let drawn = verify::render_like(svg, &self.picture, [1.0; 3])?;
+        let seen = Quality::between(&self.truth.picture, &drawn)?;
         let mut entry = CaseEntry {
             found: contents(svg)?,
             ssimulacra2: Some(seen.ssimulacra2),
             details_kept: seen.details_kept,
-            page_levels: page::levels(svg, &self.picture)?,
-            psnr_db: Some(decibels(svg, &self.picture)?),
-            truth_db: Some(decibels(svg, &self.truth.picture)?),
+            page_levels: page::levels(&drawn, &self.picture),
+            psnr_db: Some(psnr(&self.picture, &drawn)?),
+            truth_db: Some(seen.psnr_db),
             input_db: Some(psnr(&self.truth.picture, &self.picture)?),
             ..self.entry(by)
         };
