@@ -351,7 +351,9 @@ impl Starts<'_> {
             if let Some((by_strokes, watch)) = rival.take_if(|_| is_up_to_race(&mut session)) {
                 let mut rival = begin(by_strokes, watch)?;
                 rival.progress.take_over(&mut session.progress);
-                let mut rival = up_to_race(rival)?;
+                while rival.phase != RACE && rival.phase != Phase::Done {
+                    step(&mut rival)?;
+                }
                 session.progress.take_over(&mut rival.progress);
                 session = costs.winner(session, rival);
             }
@@ -410,14 +412,6 @@ impl Starts<'_> {
         };
         wins(file, other) || !wins(other, file) && own < others
     }
-}
-
-/// Draws as far as the race.
-fn up_to_race(mut session: Session<'_>) -> Result<Session<'_>> {
-    while session.phase != RACE && session.phase != Phase::Done {
-        step(&mut session)?;
-    }
-    Ok(session)
 }
 
 /// True of a drawing that is about to run a race: it has many areas that are not all where they were seen.

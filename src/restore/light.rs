@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::planes::Planes;
+use super::planes::{Planes, tones};
 use crate::math::{Normal, median};
 
 /// Numbers of a quadratic field.
@@ -151,15 +151,9 @@ impl Page {
 
 /// The sum of the squares of the shares of tones of four levels: one in so many, if all are as common.
 fn concentration(values: impl Iterator<Item = f32>) -> f32 {
-    let mut tones = [0.0_f32; 64];
-    for value in values {
-        tones[(value / 4.0).clamp(0.0, 63.0) as usize] += 1.0;
-    }
-    let count = tones.iter().sum::<f32>().max(1.0);
-    tones
-        .iter()
-        .map(|tone| (tone / count) * (tone / count))
-        .sum()
+    let tones = tones(values).map(|count| count as f32);
+    let all = tones.iter().sum::<f32>().max(1.0);
+    tones.iter().map(|tone| (tone / all) * (tone / all)).sum()
 }
 
 /// Paper in one plane.

@@ -267,10 +267,9 @@ fn without_noise(
 
 /// True if most pixels have one of a few tones.
 fn is_flat_art(planes: &Planes) -> bool {
-    let mut tones = [0_usize; 64];
-    for (pixel, value) in planes.planes[0].iter().enumerate() {
-        tones[(*value / 4.0).clamp(0.0, 63.0) as usize] += usize::from(planes.is_opaque(pixel));
-    }
+    let luma = planes.planes[0].iter().enumerate();
+    let opaque = luma.filter(|(pixel, _)| planes.is_opaque(*pixel));
+    let mut tones = planes::tones(opaque.map(|(_, value)| *value));
     tones.sort_unstable_by(|a, b| b.cmp(a));
     let all: usize = tones.iter().sum();
     let most: usize = tones.iter().take(TONES).sum();

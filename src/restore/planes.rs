@@ -3,6 +3,15 @@
 use crate::error::Result;
 use crate::image::Image;
 
+/// How many values of luma have each tone of four levels.
+pub(super) fn tones(luma: impl Iterator<Item = f32>) -> [usize; 64] {
+    let mut tones = [0; 64];
+    for value in luma {
+        tones[(value / 4.0).clamp(0.0, 63.0) as usize] += 1;
+    }
+    tones
+}
+
 /// Luma and two chromas (BT.601, as JPEG has them), in levels of 8 bits: luma 0 to 255, chromas −128 to 127.
 #[derive(Clone)]
 pub(super) struct Planes {
