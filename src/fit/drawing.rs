@@ -7,7 +7,7 @@ pub(super) mod masking;
 pub(super) mod objective;
 mod scene;
 mod shading;
-mod shadows;
+pub(super) mod shadows;
 pub(super) mod surface;
 
 use fearless_simd::Level;

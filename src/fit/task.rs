@@ -1,15 +1,17 @@
 //! The task of a fit: what it draws, and how.
 
+use std::sync::{Arc, OnceLock};
+
 use super::base::Base;
 use super::budget::price::Price;
 use super::budget::reduction;
-use super::config::Config;
+use super::config::{Background, Config};
 use super::drawing::background;
 use super::drawing::focus::Focus;
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::restore::Doubt;
-use crate::scene::Scene;
+use crate::scene::{Area, Scene};
 
 /// What a fit draws, and how.
 #[derive(Clone)]
@@ -26,6 +28,8 @@ pub(super) struct Task {
     pub(super) paleness_db: Option<f64>,
     /// Most marks that areas are split into.
     pub(super) most_marks: usize,
+    /// The background and the ground of all drawings of the picture, once they are found.
+    pub(super) ground: Arc<OnceLock<(Background, Vec<Area>)>>,
 }
 
 impl Task {
@@ -39,6 +43,7 @@ impl Task {
             doubt: Doubt::default(),
             paleness_db: None,
             most_marks: usize::MAX,
+            ground: Arc::default(),
         }
     }
 

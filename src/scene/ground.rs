@@ -1,7 +1,7 @@
 //! The ground: areas on the background, behind all marks.
 //!
-//! They hold exactly what their SVG elements hold: tenths of a px of an outline, hundredths of a blur, 8-bit colour and
-//! opacity. So they are rounded once, where they are made, and reading gives back what was written.
+//! They hold exactly what their SVG elements hold: tenths of a px of the outline of a shadow, hundredths of others and of a blur, 8-bit
+//! colour and opacity. So they are rounded once, where they are made, and reading gives back what was written.
 
 use kurbo::Rect;
 
@@ -30,6 +30,14 @@ impl Area {
             shade: Some(shade.clone()),
             ..Self::plain(vec![page.path()], color(shade.mean()), 1.0)
         }
+    }
+
+    /// True if it is a gradient that fills a page of this width and height, px.
+    pub(crate) fn is_page(&self, size: [u32; 2]) -> bool {
+        let page = |shade: &Shade| Self::page(shade.clone(), size).rings;
+        self.shade
+            .as_ref()
+            .is_some_and(|shade| page(shade) == self.rings)
     }
 
     /// This area with a Gaussian `blur` of this standard deviation, px, as a soft shadow or a glow; rounded to what its file

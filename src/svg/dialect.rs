@@ -21,6 +21,8 @@ pub(super) const FILTER: [(&str, &str); 2] = [
 pub(super) const FILTER_PLACE: [&str; 4] = ["x", "y", "width", "height"];
 /// The element of a filter that blurs, and its standard deviation.
 pub(super) const GAUSSIAN: (&str, &str) = ("feGaussianBlur", "stdDeviation");
+/// The beginning of the ids of the things below shadows, which their numbers follow.
+pub(super) const SURFACE_ID: &str = "surface";
 /// The id of the shade's gradient.
 pub(super) const SHADE_ID: &str = "shade";
 

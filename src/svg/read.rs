@@ -52,7 +52,7 @@ pub(super) fn scene(dom: &Dom<'_>) -> Result<Scene> {
     }
     let mut reader = Reader::default();
     let mut scene = page(&reader.element(root)?)?;
-    // Style sheet, background, gradient of the page, shadows, layers: each may be absent, and none comes later.
+    // Style sheet, background, gradient of the page, shadows and what they fall on, layers: each may be absent, and none comes later.
     let mut children = elements(root)?.into_iter().peekable();
     if let Some(node) = children.next_if(|node| node.name() == "style") {
         reader.rules = style_sheet(&reader.element(node)?)?;
@@ -62,16 +62,25 @@ pub(super) fn scene(dom: &Dom<'_>) -> Result<Scene> {
         rect.expect_page(&scene)?;
         scene.background = Some(rect.get("fill", dialect::channels).map(rgb)?);
     }
-    if let Some(node) = children.next_if(ground::is_gradient) {
+    if let Some(node) = children.next_if(ground::is_of_page) {
         let page = reader.page_gradient(node, children.next(), &scene)?;
         scene.ground.push(page);
     }
-    for number in 1.. {
-        let Some(node) = children.next_if(|node| node.name() == "filter") else {
-            break;
-        };
-        let shadow = reader.shadow(node, children.next(), number)?;
-        scene.ground.push(shadow);
+    let group = reader.element(root)?;
+    let [mut shadows, mut surfaces] = [0, 0];
+    while let Some(node) = children.next_if(ground::is_in_ground) {
+        scene.ground.push(if node.name() == "filter" {
+            shadows += 1;
+            reader.shadow(node, children.next(), shadows)?
+        } else {
+            surfaces += 1;
+            let gradient = ground::is_gradient(&node).then_some(node);
+            let element = match gradient {
+                Some(gradient) => ground::filled(gradient, children.next())?,
+                None => node,
+            };
+            reader.surface(gradient, element, &group, surfaces)?
+        });
     }
     scene.stages = reader.layers(children, 1)?;
     Ok(scene)

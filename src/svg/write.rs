@@ -88,16 +88,28 @@ fn head(scene: &Scene, options: &WriteOptions, sheet: Option<&Sheet>) -> String 
 fn push_ground(out: &mut String, scene: &Scene) {
     let Scene { width, height, .. } = *scene;
     let (id, shadow, blur) = (dialect::SHADE_ID, dialect::SHADOW_ID, dialect::BLUR_ID);
-    let mut number = 0;
+    let [mut shadows, mut surfaces] = [0, 0];
     for area in &scene.ground {
-        if let Some(shade) = &area.shade {
-            gradient::push(out, shade, id);
-            *out += &format!("\n<rect width=\"{width}\" height=\"{height}\" fill=\"url(#{id})\"/>");
-        } else {
-            number += 1;
-            gradient::push_blur(out, area, number);
-            let names = format!(" id=\"{shadow}-{number}\" filter=\"url(#{blur}-{number})\"");
-            element::push_alone(out, &Mark::from(area.clone()).into(), &names);
+        let mut mark = Written::from(Mark::from(area.clone()));
+        match &area.shade {
+            Some(shade) if area.is_page([width, height]) => {
+                gradient::push(out, shade, id);
+                *out +=
+                    &format!("\n<rect width=\"{width}\" height=\"{height}\" fill=\"url(#{id})\"/>");
+            }
+            None if area.blur > 0.0 => {
+                shadows += 1;
+                gradient::push_blur(out, area, shadows);
+                let names = format!(" id=\"{shadow}-{shadows}\" filter=\"url(#{blur}-{shadows})\"");
+                element::push_alone(out, &mark, &names);
+            }
+            _ => {
+                surfaces += 1;
+                // Layers have numbers from 1.
+                mark.place = [0, surfaces];
+                let names = format!(" id=\"{}-{surfaces}\"", dialect::SURFACE_ID);
+                element::push_alone(out, &mark, &names);
+            }
         }
         out.push('\n');
     }

@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use crate::fit::config::Background;
-use crate::fit::drawing::{shading, shadows};
+use crate::fit::drawing::shading;
+use crate::fit::drawing::shadows::{self, Page, Terms};
 use crate::image::Image;
 use crate::math;
-use crate::scene::{Area, Rgb};
+use crate::scene::{Area, Mark, Rgb};
 
 /// Least share of the pixels that have the most common colour if that becomes the background; otherwise the mean colour does.
 const PREVAILING_SHARE: f64 = 0.25;
@@ -38,25 +39,29 @@ pub(in crate::fit) fn for_strokes(
     }
 }
 
-/// The background and the ground of a new drawing. A gradient replaces the background, and shadows lie on one of one colour that
-/// stays.
-pub(in crate::fit) fn with_ground(picture: &Image, price_per_byte: f32) -> (Background, Vec<Area>) {
+/// The background and the ground of a new drawing. A gradient replaces the background, and shadows lie on a page that stays.
+pub(in crate::fit) fn with_ground(
+    picture: &Image,
+    price_per_byte: f32,
+    terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
+) -> (Background, Vec<Area>) {
+    let shadows = |page: &Page| shadows::choose(picture, page, price_per_byte, terms);
     if let Some(page) = shading::choose(picture, price_per_byte) {
-        return (Background::None, vec![page]);
+        let shadows = page.shade.clone().map(|shade| shadows(&Page::Shade(shade)));
+        let ground = std::iter::once(page).chain(shadows.into_iter().flatten());
+        return (Background::None, ground.collect());
     }
     // A transparent picture has no page, but may have shadows. An opaque one without paper has neither.
-    let page = match picture.alpha() {
-        Some(_) => Some(None),
-        None => paper(picture).map(Some),
+    let (page, background) = match (picture.alpha(), paper(picture)) {
+        (Some(_), _) => (Page::Clear, Background::Auto),
+        (None, Some(color)) => (Page::Color(color), Background::Color(color)),
+        (None, None) => return (Background::Auto, Vec::new()),
     };
-    let of = |page| shadows::choose(picture, page, price_per_byte);
-    let shadows = page.map_or_else(Vec::new, of);
-    // The blurs were fitted on this colour, so the background has to keep it.
-    let background = match page.flatten() {
-        Some(color) if !shadows.is_empty() => Background::Color(color),
-        _ => Background::Auto,
-    };
-    (background, shadows)
+    match shadows(&page) {
+        ground if ground.is_empty() => (Background::Auto, ground),
+        // The blurs were fitted on this colour, so the background has to keep it.
+        ground => (background, ground),
+    }
 }
 
 /// What a drawing that is not transparent lies on, and what a picture with alpha is flattened onto for it: white unless told

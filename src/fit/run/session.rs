@@ -16,6 +16,7 @@ use crate::fit::descent::{Course, Descent};
 use crate::fit::drawing::bounds::Bounds;
 use crate::fit::drawing::focus::Focus;
 use crate::fit::drawing::masking;
+use crate::fit::drawing::shadows::Terms;
 use crate::fit::drawing::surface::{Prepared, Surface};
 use crate::fit::drawing::{Drawing, Snapshot, background};
 use crate::fit::file::{RenderedFile, Writer};
@@ -29,7 +30,7 @@ use crate::fit::task::Task;
 use crate::fit::time::{Forecast, Timer};
 use crate::image::Image;
 use crate::metrics::psnr_db;
-use crate::scene::Area;
+use crate::scene::{Area, Mark};
 use crate::svg::Form;
 
 /// Weight of errors near lost details. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of 1 px
@@ -121,7 +122,7 @@ impl<'a> Session<'a> {
             ground,
         } = Prepared::new(
             picture,
-            choose_background(picture, config, base, price.per_byte()),
+            choose_background(picture, task, price),
             base,
             coarsest,
         )?;
@@ -491,19 +492,23 @@ impl<'a> Session<'a> {
 
 /// The background and the ground of a new drawing. A ground, with `auto`, has any colours and opacities. So a drawing of few
 /// colours or of given pens has none, nor has a transparent drawing of opaque strokes.
-fn choose_background(
-    picture: &Image,
-    config: &Config,
-    base: Option<&Base>,
-    price_per_byte: f32,
-) -> (Background, Vec<Area>) {
-    let may_be = base.is_none()
+fn choose_background(picture: &Image, task: &Task, price: Price) -> (Background, Vec<Area>) {
+    let config = &task.config;
+    let may_be = task.base.is_none()
         && config.background == Background::Auto
         && config.colors == Colors::Free
         && config.pens.is_none()
         && !(config.opaque && picture.alpha().is_some());
     match may_be {
-        true => background::with_ground(picture, price_per_byte),
+        true => {
+            let by_bytes = price.of_bytes_alone();
+            let terms = Terms {
+                doubt: task.doubt,
+                price: |mark: &Mark| by_bytes.least_gain(mark),
+            };
+            let find = || background::with_ground(picture, price.per_byte(), &terms);
+            task.ground.get_or_init(find).clone()
+        }
         false => (config.background, Vec::new()),
     }
 }

@@ -5,13 +5,24 @@ use super::{Reader, elements, painted, unexpected};
 use crate::error::Result;
 use crate::math::Point;
 use crate::scene::{Area, Axis, Mark, Scene, Shade, ShadeStop, color, px};
-use crate::svg::dialect::{self, BLUR_ID, SHADE_ID, SHADOW_ID, Unit};
+use crate::svg::dialect::{self, BLUR_ID, SHADE_ID, SHADOW_ID, SURFACE_ID, Unit};
 use crate::svg::dom::Node;
 use crate::svg::gradient::place;
 
 /// True if the element is a gradient.
 pub(super) fn is_gradient(node: &Node<'_>) -> bool {
     [dialect::LINEAR, dialect::RADIAL].contains(&node.name())
+}
+
+/// True if the element is the gradient of a page.
+pub(super) fn is_of_page(node: &Node<'_>) -> bool {
+    is_gradient(node) && node.get("id") == Some(SHADE_ID)
+}
+
+/// True if the element is one of the ground, or comes before one.
+pub(super) fn is_in_ground(node: &Node<'_>) -> bool {
+    let is_surface = |id: &str| id.starts_with(SURFACE_ID);
+    node.name() == "filter" || is_gradient(node) || node.get("id").is_some_and(is_surface)
 }
 
 /// The element after a gradient or a filter.
@@ -60,6 +71,23 @@ impl Reader {
             "is shorter than a px, or has less than two stops, too many, or stops out of order";
         let shade = Shade::new(axis, &stops).map_err(|_| gradient.refused(why))?;
         Ok((gradient.get("id", |id| Some(id.to_owned()))?, shade))
+    }
+
+    /// The thing below shadows of an element, the `number`-th of its file, with its gradient.
+    pub(super) fn surface(
+        &self,
+        gradient: Option<Node<'_>>,
+        node: Node<'_>,
+        group: &Element<'_>,
+        number: usize,
+    ) -> Result<Area> {
+        let shade = gradient.map(|node| self.gradient(node)).transpose()?;
+        let area = self.mark(node, group, &[])?;
+        area.expect("id", &format!("{SURFACE_ID}-{number}"))?;
+        match &painted(&area, Unit::PX, shade)?[..] {
+            [Mark::Area(area)] => Ok(area.clone()),
+            _ => Err(area.refused("is below shadows and a stroke: make it an area")),
+        }
     }
 
     /// The shadow of a filter, the `number`-th of its file, and the area after it.

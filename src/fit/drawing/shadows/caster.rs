@@ -1,11 +1,17 @@
 //! The blurs of a shape that meet the shares of a shadow best.
 
-use super::shares::Shares;
+use super::region::Region;
 use crate::math;
-use crate::render::{self, Plane, blurred};
-use crate::scene::Path;
+use crate::render::{Plane, blurred};
+use crate::scene::Area;
 
-/// Blocks along the longer side of the picture, whose shares are fitted.
+/// How far a shadow may reach beyond what casts it, in units of the shorter side of that, and the least and the most of it, px.
+const REACH: f64 = 0.75;
+const LEAST_REACH: f64 = 24.0;
+const MOST_REACH: f64 = 130.0;
+/// Largest blur, in units of that reach.
+const BLUR_OF_REACH: f32 = 0.4;
+/// Blocks along the longer side of a region, whose shares are fitted.
 const BLOCKS: usize = 160;
 /// Standard deviations of the blurs that are tried first, px.
 const BLURS: [f32; 8] = [1.5, 2.5, 4.0, 6.5, 10.0, 16.0, 26.0, 40.0];
@@ -13,8 +19,9 @@ const BLURS: [f32; 8] = [1.5, 2.5, 4.0, 6.5, 10.0, 16.0, 26.0, 40.0];
 const BLUR_STEP: f32 = 1.25;
 /// Number of times that blurs are tried.
 const REFINEMENTS: usize = 5;
-/// The first step of the search for a place, blocks.
+/// The first step of the search for a place, blocks, and that of searches from the place of another blur.
 const SHIFT_STEP: f64 = 2.0;
+const NEXT_STEP: f64 = 0.5;
 /// The last step.
 const SHIFT_FINEST: f64 = 0.05;
 
@@ -27,79 +34,110 @@ pub(super) struct Cast {
     pub(super) opacity: f32,
 }
 
-/// The shares of a reduced picture, and of what casts them. Lengths are in px of the picture.
+/// The box around areas on a page of this size that holds their shadows, the shares of its pixels that they cover, and how far it
+/// goes beyond them, px.
+pub(super) fn reach_of<'a>(
+    areas: impl Iterator<Item = &'a Area> + Clone,
+    page: [usize; 2],
+) -> (Region, Plane, f32) {
+    let bounds = areas.clone().map(Area::extent).reduce(|a, b| a.union(b));
+    let bounds = bounds.unwrap_or_default();
+    let reach = (REACH * bounds.width().min(bounds.height())).clamp(LEAST_REACH, MOST_REACH);
+    let region = Region::around(bounds.inflate(reach, reach));
+    let mut mask = vec![0.0_f32; region.size[0] * region.size[1]];
+    for area in areas {
+        let own = region.covered(&area.rings).values;
+        let shares = mask.iter_mut().zip(own);
+        shares.for_each(|(share, own)| *share = share.max(own));
+    }
+    // What the border of the page cuts off goes on beyond it.
+    let values = (0..mask.len())
+        .map(|k| mask[region.on_page(k, page)])
+        .collect();
+    let width = region.size[0];
+    (region, Plane { width, values }, reach as f32)
+}
+
+/// The shares of blocks of a region, and of what casts them. Lengths are in px of the picture.
 pub(super) struct Search {
     /// Pixels along the side of a block.
     side: usize,
     caster: Plane,
-    /// The share of each block that is not explained yet, where it is seen, and the number of its pixels.
-    shares: Vec<(usize, f32)>,
+    /// The share of each block that is not explained yet, where it is seen, and how much it counts.
+    shares: Vec<(usize, f32, f32)>,
+    /// Largest blur that there is room for, px.
+    widest: f32,
 }
 
 impl Search {
-    /// The search on the blocks that a shadow is fitted on, if any of them is seen.
-    pub(super) fn of(shares: &Shares, rings: &[Path]) -> Option<Self> {
-        let (width, height) = (shares.width, shares.seen.len() / shares.width);
-        let caster = render::filled(rings.iter().cloned(), [width, height]);
+    /// The search on the blocks of a region, if the share of any of them is seen. `share` is that of a pixel of the page, with
+    /// the squared difference that the whole share makes.
+    pub(super) fn of(
+        (region, mask, reach): (&Region, &Plane, f32),
+        page: [usize; 2],
+        share: impl Fn(usize) -> Option<(f32, f32)>,
+    ) -> Option<Self> {
+        let [width, height] = region.size;
         let side = width.max(height).div_ceil(BLOCKS).max(1);
         let columns = width.div_ceil(side);
         let count = columns * height.div_ceil(side);
-        // A block counts where nothing covers any of its pixels.
-        let mut sums = vec![(0.0_f32, 0.0_f32, 0_usize, true); count];
-        for (i, (seen, caster)) in shares.seen.iter().zip(&caster.values).enumerate() {
-            let block = i / width / side * columns + i % width / side;
-            let (share, cast, pixels, is_seen) = &mut sums[block];
-            *share += seen.unwrap_or(0.0);
-            *cast += caster;
-            *pixels += 1;
-            *is_seen &= seen.is_some();
+        let block = |k: usize| k / width / side * columns + k % width / side;
+        let mut casts = vec![(0.0_f32, 0.0_f32); count];
+        for (k, cast) in mask.values.iter().enumerate() {
+            let (sum, pixels) = &mut casts[block(k)];
+            *sum += cast;
+            *pixels += 1.0;
         }
-        let whole = |&(i, &(share, _, pixels, is_seen)): &(usize, &(f32, f32, usize, bool))| {
-            is_seen.then(|| (i, share / pixels as f32))
-        };
-        let known: Vec<(usize, f32)> = sums
-            .iter()
-            .enumerate()
-            .filter_map(|sum| whole(&sum))
-            .collect();
-        let caster = sums
-            .iter()
-            .map(|&(_, cast, pixels, _)| cast / pixels as f32);
-        let caster = Plane {
-            width: columns,
-            values: caster.collect(),
-        };
-        let is_shaded = known.iter().any(|(_, share)| *share > 0.0);
-        is_shaded.then_some(Self {
+        // A block counts where all of its pixels are seen.
+        let mut sums = vec![(0.0_f32, 0.0_f32, 0.0_f32); count];
+        for (k, i) in region.pixels(page) {
+            if let Some((share, contrast2)) = share(i) {
+                let (sum, weight, seen) = &mut sums[block(k)];
+                *sum += share;
+                *weight += contrast2;
+                *seen += 1.0;
+            }
+        }
+        let all = sums.into_iter().zip(&casts).enumerate();
+        let whole = all.filter(|(_, ((.., seen), (_, pixels)))| seen == pixels);
+        let known = whole.map(|(block, ((share, weight, seen), _))| (block, share / seen, weight));
+        let known: Vec<(usize, f32, f32)> = known.collect();
+        let is_shaded = known.iter().any(|(_, share, _)| *share > 0.0);
+        is_shaded.then(|| Self {
             side,
-            caster,
+            caster: Plane {
+                width: columns,
+                values: casts.iter().map(|(sum, pixels)| sum / pixels).collect(),
+            },
             shares: known,
+            widest: BLUR_OF_REACH * reach,
         })
     }
 
-    /// The squared error of the shares that no cast explains yet, summed over pixels.
+    /// The squared error that no cast explains yet, summed over pixels and channels.
     pub(super) fn error(&self) -> f32 {
-        let pixels = (self.side * self.side) as f32;
-        pixels
-            * self
-                .shares
-                .iter()
-                .map(|(_, share)| share * share)
-                .sum::<f32>()
+        let errors = self
+            .shares
+            .iter()
+            .map(|(_, share, weight)| weight * share * share);
+        errors.sum()
     }
 
     /// The cast that leaves the least error.
     pub(super) fn best(&self) -> Option<Cast> {
         let mut best: Option<(f32, Cast)> = None;
         let mut ratio = BLUR_STEP;
-        let mut blurs: Vec<f32> = BLURS.iter().map(|blur| blur / self.side as f32).collect();
+        let blurs = BLURS.iter().filter(|blur| **blur <= self.widest);
+        let mut blurs: Vec<f32> = blurs.map(|blur| blur / self.side as f32).collect();
         // Coarse ones first, and then ever finer ones beside the best.
         for _ in 0..REFINEMENTS {
             // Each blur is tried from the best shift so far, as the shift hardly depends on the blur.
             for blur in blurs {
                 let soft = blurred(self.caster.clone(), blur);
-                let from = best.as_ref().map_or([0.0; 2], |(_, cast)| cast.shift);
-                let (error, shift, opacity) = self.placed(&soft, from);
+                let (from, step) = best
+                    .as_ref()
+                    .map_or(([0.0; 2], SHIFT_STEP), |(_, cast)| (cast.shift, NEXT_STEP));
+                let (error, shift, opacity) = self.placed(&soft, from, step);
                 if best.as_ref().is_none_or(|(least, _)| error < *least) {
                     best = Some((
                         error,
@@ -129,22 +167,22 @@ impl Search {
         let px = self.side as f32;
         let soft = blurred(self.caster.clone(), cast.blur / px);
         let shift = cast.shift.map(|v| v / px);
-        for (i, share) in &mut self.shares {
+        for (i, share, _) in &mut self.shares {
             *share -= cast.opacity * at(&soft, *i, shift);
         }
     }
 
     /// The least error of a blurred shape, near this shift, with the shift and the opacity there. In blocks.
-    fn placed(&self, soft: &Plane, from: [f32; 2]) -> (f32, [f32; 2], f32) {
+    fn placed(&self, soft: &Plane, from: [f32; 2], step: f64) -> (f32, [f32; 2], f32) {
         let cost = |shift: [f32; 2]| {
             let (mut both, mut own, mut all) = (0.0, 0.0, 0.0);
-            for &(i, share) in &self.shares {
+            for &(i, share, weight) in &self.shares {
                 let covered = at(soft, i, shift);
-                both += share * covered;
-                own += covered * covered;
-                all += share * share;
+                both += weight * share * covered;
+                own += weight * covered * covered;
+                all += weight * share * share;
             }
-            // For a given shape the error Σ (share − α·covered)² is least at α = Σ share·covered / Σ covered².
+            // For a given shape the error Σ w·(share − α·covered)² is least at α = Σ w·share·covered / Σ w·covered².
             let opacity = (both / own.max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
             (
                 // all − 2α·both + α²·own
@@ -152,7 +190,7 @@ impl Search {
                 opacity,
             )
         };
-        let shift = math::search(from.map(f64::from), SHIFT_STEP, SHIFT_FINEST, |shift| {
+        let shift = math::search(from.map(f64::from), step, SHIFT_FINEST, |shift| {
             cost(shift.map(|px| px as f32)).0
         });
         let shift = shift.map(|px| px as f32);
@@ -162,7 +200,7 @@ impl Search {
 }
 
 /// The value of a plane that was moved by `shift`, at its block `i`: between four blocks.
-fn at(plane: &Plane, i: usize, shift: [f32; 2]) -> f32 {
+pub(super) fn at(plane: &Plane, i: usize, shift: [f32; 2]) -> f32 {
     let height = plane.values.len() / plane.width;
     let [x, y] = [
         (i % plane.width) as f32 - shift[0],
