@@ -26,6 +26,7 @@ pub use band::Band;
 pub(crate) use colors::{distinct_colors, linear_light};
 pub use grid::{MAX_PRECISION, MIN_WIDTH};
 pub(crate) use grid::{UNITS_PER_PX, color, px, quantum, units};
+pub use ground::Blurs;
 pub(crate) use mark::counted;
 pub use mark::{Area, Mark, Marks};
 pub(crate) use overlap::{Bundles, Precedence};
@@ -95,7 +96,7 @@ pub struct Scene {
     /// The colour behind all marks; `None` if the drawing is transparent.
     pub background: Option<Rgb>,
     /// Areas on the background, behind all marks, which no fit changes: the gradient of the page if it has one ([`Area::page`]),
-    /// and then soft shadows and glows, back to front ([`Area::blurred`]).
+    /// and then, back to front, soft shadows and glows ([`Area::blurred`]) and the things that they are seen on.
     pub ground: Vec<Area>,
     /// Back to front.
     pub stages: Vec<Stage>,

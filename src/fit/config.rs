@@ -13,7 +13,7 @@ use crate::coverage::CoverageSchedule;
 use crate::error::{Error, Result};
 use crate::math;
 use crate::restore::Paper;
-use crate::scene::{MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, Shade, quantum};
+use crate::scene::{Blurs, MAX_POINTS, MAX_PRECISION, Mark, Marks, Rgb, Scene, Shade, quantum};
 use crate::svg::{Form, Order, WriteOptions};
 use crate::threads::Workers;
 
@@ -51,6 +51,9 @@ pub struct Config {
     /// What becomes of the paper of a page that was scanned or photographed
     #[cfg_attr(feature = "cli", arg(long, default_value_t))]
     pub paper: Paper,
+    /// What soft shadows are drawn with
+    #[cfg_attr(feature = "cli", arg(long, default_value_t))]
+    pub blurs: Blurs,
     /// Which errors count (default: eye, but exact with --psnr)
     #[cfg_attr(feature = "cli", arg(long))]
     pub look: Option<ErrorWeighting>,
@@ -118,6 +121,7 @@ impl Default for Config {
             marks: Marks::default(),
             literal: false,
             paper: Paper::default(),
+            blurs: Blurs::default(),
             look: None,
             opaque: false,
             coverage: CoverageSchedule::default(),

@@ -7,7 +7,7 @@ use super::{Config, Execution};
 use crate::error::{Error, Result};
 
 /// The names of all options.
-pub const OPTIONS: [&str; 28] = [
+pub const OPTIONS: [&str; 29] = [
     "strokes",
     "psnr",
     "bytes",
@@ -18,6 +18,7 @@ pub const OPTIONS: [&str; 28] = [
     "progressive",
     "literal",
     "paper",
+    "blurs",
     "look",
     "opaque",
     "coverage",

@@ -19,11 +19,12 @@ const TOLERANCE: f64 = 0.01;
 
 /// The text of a DXF of the drawing.
 pub fn dxf(sheet: &Sheet<'_>) -> String {
-    let colors = distinct_colors(sheet.scene.marks().map(|mark| mark.color().map(quantum)));
+    let scene = sheet.scene.without_shadows();
+    let colors = distinct_colors(scene.marks().map(|mark| mark.color().map(quantum)));
     let [width, height] = [sheet.scene.width, sheet.scene.height].map(f64::from);
     let page = Point::new(width * sheet.mm(), height * sheet.mm());
     let mut file = File::new();
-    for mark in sheet.scene.marks() {
+    for mark in scene.marks() {
         let layer = file::layer(mark.color().map(quantum));
         for path in mark.paths() {
             push(&mut file, &layer, path, sheet);

@@ -45,7 +45,7 @@ impl std::str::FromStr for Hatch {
 /// # Errors
 /// As [`cut_out`](super::cut_out).
 pub fn hatched(scene: &Scene, spacing: f64, pen: f64, degrees: f64) -> Result<Scene> {
-    let scene = &scene.clone().filled();
+    let scene = &scene.without_shadows().filled();
     let paper = scene.background.map(|c| c.map(quantum));
     let mut stages = Vec::new();
     for area in areas(scene)? {

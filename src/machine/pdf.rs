@@ -30,10 +30,9 @@ pub fn pdf(sheet: &Sheet<'_>) -> Vec<u8> {
         file.fill_page(color);
     }
     for area in &scene.ground {
-        file.content.save_state();
-        match &area.shade {
-            Some(shade) => file.shade(shade),
-            None => file.shadow(area, [scene.width, scene.height]),
+        match area.blur > 0.0 {
+            true => file.shadow(area, [scene.width, scene.height]),
+            false => file.mark(&Mark::Area(area.clone())),
         }
     }
     for stage in &scene.stages {
@@ -164,6 +163,7 @@ impl File {
 
     /// Draws a shadow: PDF has no blur, so that its coverage is an image, which masks its colour. Restores the graphics state.
     fn shadow(&mut self, shadow: &Area, [width, height]: [u32; 2]) {
+        self.content.save_state();
         let coverage = render::coverage(shadow, width as usize, height as usize).into_iter();
         let levels = coverage.map(|covered| (255.0 * shadow.opacity * covered + 0.5) as u8);
         let levels = deflated(&levels.collect::<Vec<_>>());

@@ -38,6 +38,7 @@ const JUST_NOTICEABLE: f32 = 0.02;
 /// [`ErrorKind::Config`](crate::ErrorKind::Config) when a mark is translucent, and
 /// [`ErrorKind::Svg`](crate::ErrorKind::Svg) when the outlines cannot be told apart.
 pub fn cut_out(scene: &Scene) -> Result<Scene> {
+    let scene = &scene.without_shadows();
     let mut marks = outlines(scene)?;
     unite_alike(&mut marks);
     let areas = areas_of(scene, &marks)?.into_iter();

@@ -17,8 +17,8 @@ pub struct SceneRecord {
     /// The gradient on it; left out if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shade: Option<ShadeRecord>,
-    /// The shadows on both, back to front, each as the area that it is a blur of, and the standard deviation of that, px; left out
-    /// if there are none.
+    /// The shadows on both and the things that they fall on, back to front, each as an area, and the standard deviation of its blur,
+    /// px, 0 of a thing; left out if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub shadows: Vec<(MarkRecord, f32)>,
     /// Marks back to front, stage by stage.
@@ -41,13 +41,16 @@ pub struct MarkRecord(
 impl From<&Scene> for SceneRecord {
     fn from(scene: &Scene) -> Self {
         let stages = scene.stages.iter();
-        let mut shades = scene.ground.iter().filter_map(|area| area.shade.as_ref());
-        let shadows = scene.ground.iter().filter(|area| area.blur > 0.0);
+        let is_page = |area: &&Area| area.is_page([scene.width, scene.height]);
+        let page = scene.ground.iter().find(is_page);
+        let shadows = scene.ground.iter().filter(|area| !is_page(area));
         Self {
             width: scene.width,
             height: scene.height,
             background: scene.background.map(css),
-            shade: shades.next().map(ShadeRecord::from),
+            shade: page
+                .and_then(|page| page.shade.as_ref())
+                .map(ShadeRecord::from),
             shadows: shadows.map(shadow).collect(),
             stages: stages
                 .map(|stage| stage.marks.iter().map(MarkRecord::from).collect())

@@ -7,9 +7,10 @@ use kurbo::Rect;
 
 use super::grid::color;
 use super::path::bounds;
-use super::{Area, Mark, Path, Shade, Shape, quantize};
+use super::{Area, Mark, Path, Scene, Shade, Shape, Stage, quantize};
 use crate::error::{Error, ErrorKind, Result};
 use crate::math::Point;
+use crate::words::words;
 
 /// Decimals of the outline of a shadow.
 const PRECISION: u8 = 1;
@@ -17,6 +18,19 @@ const PRECISION: u8 = 1;
 const BLURS: [f32; 2] = [0.5, 1000.0];
 /// Standard deviations beyond which nothing is seen of a blur.
 const REACH: f64 = 3.0;
+
+/// What soft shadows are drawn with.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Blurs {
+    /// A filter that blurs a shape
+    #[default]
+    Filter,
+    /// Some shapes on each other, for programs that ignore filters, such as apps and cutters
+    Steps,
+}
+
+words!(Blurs, "a kind of blurs": Filter = "filter", Steps = "steps");
 
 impl Area {
     /// A page of this width and height, px, filled with a gradient.
@@ -68,5 +82,24 @@ impl Area {
         let reach = REACH * f64::from(self.blur);
         let points = self.rings.iter().flat_map(Path::points);
         bounds(points.map(|p| p.at)).inflate(reach, reach).expand()
+    }
+}
+
+impl Scene {
+    /// The scene without a gradient of its page and without blurs: the things that shadows fall on are marks of a first stage.
+    #[must_use]
+    pub(crate) fn without_shadows(&self) -> Self {
+        let size = [self.width, self.height];
+        let is_thing = |area: &&Area| area.blur <= 0.0 && !area.is_page(size);
+        let things: Stage = self.ground.iter().filter(is_thing).cloned().collect();
+        let things = Some(things).filter(|stage| !stage.marks.is_empty());
+        Self {
+            ground: Vec::new(),
+            stages: things
+                .into_iter()
+                .chain(self.stages.iter().cloned())
+                .collect(),
+            ..*self
+        }
     }
 }

@@ -25,6 +25,8 @@ export interface Options {
   literal?: boolean;
   /** What becomes of the paper of a page that was scanned or photographed: it keeps its colour, or becomes white; `own` if it is left out. */
   paper?: "own" | "white";
+  /** What soft shadows are drawn with: a filter, or steps of opacity for programs that ignore filters; `filter` if it is left out. */
+  blurs?: "filter" | "steps";
   /** Which errors count: those that people see, or all alike, for a tenth of a dB more; if it is left out, `exact` with `psnr`, and `eye` without. */
   look?: "eye" | "exact";
   /** Opaque strokes only. */

@@ -67,6 +67,7 @@ def fit(
     marks: str = "auto",
     literal: bool = False,
     paper: str = "own",
+    blurs: str = "filter",
     look: Optional[str] = None,
     opaque: bool = False,
     coverage: str = "smoothstep",
@@ -110,6 +111,7 @@ def fit(
             `areas`.
         literal: Draw noise, traces of JPEG and other damage of the picture as they are.
         paper: What becomes of the paper of a page that was scanned or photographed: it keeps its colour (`own`), or becomes `white`.
+        blurs: What soft shadows are drawn with: a `filter`, or `steps` of opacity for programs that ignore filters.
         look: Which errors count: those that people see (`eye`), or all alike (`exact`), for a tenth of a dB more; `None` is
             `exact` with `psnr`, and `eye` without.
         opaque: Use opaque strokes only.
@@ -173,6 +175,7 @@ def refine(
     marks: str = "auto",
     literal: bool = False,
     paper: str = "own",
+    blurs: str = "filter",
     look: Optional[str] = None,
     opaque: bool = False,
     coverage: str = "smoothstep",

@@ -5,6 +5,7 @@
 //! things    the shapes of that, back to front, and which of them soft pixels surround
 //! ink       the colour that a shadow mixes surfaces with
 //! caster    the blurs of a shape that meet the soft pixels best
+//! steps     blurs for programs without filters
 //! ```
 //!
 //! A shadow lies below what casts it and on all that is below that. So the things that a shadow is seen on go with it below the marks.
@@ -12,6 +13,7 @@
 mod caster;
 mod ink;
 mod region;
+mod steps;
 mod surfaces;
 mod things;
 
@@ -22,7 +24,7 @@ use kurbo::Rect;
 use crate::image::Image;
 use crate::math;
 use crate::render::{Plane, blurred};
-use crate::scene::{Area, Mark, Path, Rgb, Shade, Shape, quantized_anywhere};
+use crate::scene::{Area, Blurs, Mark, Path, Rgb, Shade, Shape, quantized_anywhere};
 use crate::shading::{Blocks, Value};
 use crate::trace;
 use caster::{Cast, Search};
@@ -100,7 +102,19 @@ fn found(
     };
     let groups = scene.groups()?;
     // 4. Those that explain soft pixels and pay, with what they are seen on.
-    Some(scene.ground(groups, price_per_byte))
+    let ground = scene.ground(groups, price_per_byte).into_iter();
+    Some(match terms.blurs {
+        Blurs::Filter => ground.collect(),
+        Blurs::Steps => ground.flat_map(without_blur).collect(),
+    })
+}
+
+/// The areas that draw an area without a filter.
+fn without_blur(area: Area) -> Vec<Area> {
+    match area.blur > 0.0 {
+        true => steps::of(&area),
+        false => vec![area],
+    }
 }
 
 impl Page {
@@ -200,7 +214,7 @@ impl Scene<'_> {
         let soft = (0..values.len()).filter(|&i| is_light(i, Light::Soft));
         let is_above = |&i: &usize| self.things.top[i].is_some_and(|top| top >= lowest);
         let above = soft.clone().filter(is_above).count();
-        let is_stack = self.things.are_placed && above as f32 > LEFT * soft.count() as f32;
+        let is_stack = self.things.may_be_below && above as f32 > LEFT * soft.count() as f32;
         let all = match is_stack {
             true => None,
             false => self.fitted(casters.clone(), &values),
@@ -249,7 +263,7 @@ impl Scene<'_> {
     fn shows(&self, i: usize, below: usize) -> Option<Value> {
         let (surface, light) = self.surfaces.at(i)?;
         // What a fit would move is no part of the ground.
-        let is_below = self.things.top[i].is_none_or(|top| self.things.are_placed && top < below);
+        let is_below = self.things.top[i].is_none_or(|top| self.things.may_be_below && top < below);
         (is_below && light != Light::Rim).then(|| self.surfaces.base(surface, i))
     }
 

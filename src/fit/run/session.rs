@@ -30,7 +30,7 @@ use crate::fit::task::Task;
 use crate::fit::time::{Forecast, Timer};
 use crate::image::Image;
 use crate::metrics::psnr_db;
-use crate::scene::{Area, Mark};
+use crate::scene::{Area, Mark, Marks};
 use crate::svg::Form;
 
 /// Weight of errors near lost details. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of 1 px
@@ -504,8 +504,11 @@ fn choose_background(picture: &Image, task: &Task, price: Price) -> (Background,
             let by_bytes = price.of_bytes_alone();
             let terms = Terms {
                 doubt: task.doubt,
+                blurs: config.blurs,
+                has_things: config.marks() != Marks::Strokes,
                 price: |mark: &Mark| by_bytes.least_gain(mark),
             };
+            // A rival by strokes lies on the ground of the drawing that it rivals.
             let find = || background::with_ground(picture, price.per_byte(), &terms);
             task.ground.get_or_init(find).clone()
         }

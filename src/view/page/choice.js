@@ -60,7 +60,7 @@ export function drawn({ width, height, background, shade, shadows = [], marks })
   const parts = [`<svg xmlns="http://www.w3.org/2000/svg" ${size} viewBox="0 0 ${width} ${height}">`];
   if (background) parts.push(`<rect ${size} fill="${background}"/>`);
   if (shade) parts.push(`${gradient(shade, "shade")}\n<rect ${size} fill="url(#shade)"/>`);
-  shadows.forEach((shadow, k) => parts.push(blurred(shadow, k + 1)));
+  shadows.forEach(([mark, blur], k) => parts.push(blur ? blurred([mark, blur], k + 1) : element(mark, `shade-0-${k + 1}`)));
   for (const stage of new Set(marks.map(({ stage }) => stage))) {
     const own = marks.filter((mark) => mark.stage === stage);
     parts.push(`<g id="stage-${stage}" fill="none" stroke-linecap="round" stroke-linejoin="round">`);

@@ -7,14 +7,17 @@
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
 
-// The background, its gradient and shadows, if there are any.
+// The background, its gradient, and shadows with the things that they fall on, which have no blur, if there are any.
 export function drawPage(context, { width, height, background, shade, shadows = [] }) {
   const fills = [background, shade && gradient(context, shade)].filter(Boolean);
   for (const fill of fills) {
     context.fillStyle = fill;
     context.fillRect(0, 0, width, height);
   }
-  for (const shadow of shadows) drawShadow(context, shadow);
+  for (const [mark, blur] of shadows) {
+    if (blur) drawShadow(context, [mark, blur]);
+    else drawMarks(context, [mark]);
+  }
 }
 
 // A blur of an area. Filters of canvases are not in all browsers, but shadows are: the area itself is drawn beyond the canvas.

@@ -122,7 +122,7 @@ def _fit_options(group: Any) -> None:
         group.add_argument(f"--{name}", type=int, metavar="N")
     for name, unit in (("psnr", "DB"), ("time", "SECONDS"), ("quality", "Q")):
         group.add_argument(f"--{name}", type=float, metavar=unit)
-    for name, words in (("preset", "PRESET"), ("marks", "MARKS"), ("look", "LOOK"), ("paper", "PAPER"), ("coverage", "EDGE"), ("background", "COLOR"), ("palette", "LIST|FILE"), ("pens", "WIDTHS"), ("form", "FORM"), ("group", "BY"), ("order", "ORDER"), ("width", "LENGTH")):
+    for name, words in (("preset", "PRESET"), ("marks", "MARKS"), ("look", "LOOK"), ("paper", "PAPER"), ("blurs", "BLURS"), ("coverage", "EDGE"), ("background", "COLOR"), ("palette", "LIST|FILE"), ("pens", "WIDTHS"), ("form", "FORM"), ("group", "BY"), ("order", "ORDER"), ("width", "LENGTH")):
         group.add_argument(f"--{name}", metavar=words)
     for name in ("literal", "opaque", "progressive"):
         group.add_argument(f"--{name}", action="store_true")

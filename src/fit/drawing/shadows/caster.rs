@@ -9,8 +9,9 @@ use crate::scene::Area;
 const REACH: f64 = 0.75;
 const LEAST_REACH: f64 = 24.0;
 const MOST_REACH: f64 = 130.0;
-/// Largest blur, in units of that reach.
+/// Largest blur and largest shift, in units of that reach.
 const BLUR_OF_REACH: f32 = 0.4;
+const SHIFT_OF_REACH: f32 = 0.5;
 /// Blocks along the longer side of a region, whose shares are fitted.
 const BLOCKS: usize = 160;
 /// Standard deviations of the blurs that are tried first, px.
@@ -65,8 +66,8 @@ pub(super) struct Search {
     caster: Plane,
     /// The share of each block that is not explained yet, where it is seen, and how much it counts.
     shares: Vec<(usize, f32, f32)>,
-    /// Largest blur that there is room for, px.
-    widest: f32,
+    /// From what casts them to the border of the region, px.
+    reach: f32,
 }
 
 impl Search {
@@ -110,7 +111,7 @@ impl Search {
                 values: casts.iter().map(|(sum, pixels)| sum / pixels).collect(),
             },
             shares: known,
-            widest: BLUR_OF_REACH * reach,
+            reach,
         })
     }
 
@@ -127,7 +128,9 @@ impl Search {
     pub(super) fn best(&self) -> Option<Cast> {
         let mut best: Option<(f32, Cast)> = None;
         let mut ratio = BLUR_STEP;
-        let blurs = BLURS.iter().filter(|blur| **blur <= self.widest);
+        let blurs = BLURS
+            .iter()
+            .filter(|blur| **blur <= BLUR_OF_REACH * self.reach);
         let mut blurs: Vec<f32> = blurs.map(|blur| blur / self.side as f32).collect();
         // Coarse ones first, and then ever finer ones beside the best.
         for _ in 0..REFINEMENTS {
@@ -174,7 +177,11 @@ impl Search {
 
     /// The least error of a blurred shape, near this shift, with the shift and the opacity there. In blocks.
     fn placed(&self, soft: &Plane, from: [f32; 2], step: f64) -> (f32, [f32; 2], f32) {
+        let farthest = SHIFT_OF_REACH * self.reach / self.side as f32;
         let cost = |shift: [f32; 2]| {
+            if math::hypot(shift[0], shift[1]) > farthest {
+                return (f64::INFINITY, 0.0);
+            }
             let (mut both, mut own, mut all) = (0.0, 0.0, 0.0);
             for &(i, share, weight) in &self.shares {
                 let covered = at(soft, i, shift);

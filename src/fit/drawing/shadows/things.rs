@@ -9,7 +9,7 @@ use crate::image::{Image, flooded};
 use crate::outline;
 use crate::render::{Canvas, Plane};
 use crate::restore::Doubt;
-use crate::scene::{Area, Mark, Marks, Path, Rgb, Shape};
+use crate::scene::{Area, Blurs, Mark, Marks, Path, Rgb, Shape};
 use crate::seed::{Pyramid, Residual};
 use crate::trace::{self, Tracing};
 
@@ -34,14 +34,18 @@ pub(super) struct Things {
     pub(super) top: Vec<Option<usize>>,
     /// Those that soft pixels surround, the most surrounded first.
     pub(super) casters: Vec<usize>,
-    /// True if they are exactly where they are seen, so that no fit would move them.
-    pub(super) are_placed: bool,
+    /// True if shadows may lie on them: they are exactly where they are seen, so that no fit would move them.
+    pub(super) may_be_below: bool,
 }
 
-/// What the tracing of things needs to know.
+/// What the choice of shadows needs to know.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::fit) struct Terms<P> {
     pub(in crate::fit) doubt: Doubt,
+    /// How shadows are drawn.
+    pub(in crate::fit) blurs: Blurs,
+    /// True if areas may lie below shadows.
+    pub(in crate::fit) has_things: bool,
     /// The squared error that a mark has to remove.
     pub(in crate::fit) price: P,
 }
@@ -58,7 +62,7 @@ impl Things {
         // What casts a shadow lies above what that is seen on. Where tracing thinks otherwise, it is told what is there without.
         let mut risen: Vec<Area> = Vec::new();
         for _ in 0..MOST_ROUNDS {
-            if !things.are_placed {
+            if !things.may_be_below {
                 break;
             }
             let first = things.areas.len() - risen.len();
@@ -117,7 +121,7 @@ impl Things {
             areas: Vec::new(),
             top: vec![None; size[0] * size[1]],
             casters: Vec::new(),
-            are_placed: marks.iter().all(|traced| traced.is_placed),
+            may_be_below: terms.has_things && marks.iter().all(|traced| traced.is_placed),
         };
         let mut windows = Vec::new();
         for traced in marks
