@@ -42,11 +42,10 @@ pub(in crate::fit) fn for_strokes(
 /// The background and the ground of a new drawing. A gradient replaces the background, and shadows lie on a page that stays.
 pub(in crate::fit) fn with_ground(
     picture: &Image,
-    price_per_byte: f32,
     terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
 ) -> (Background, Vec<Area>) {
-    let shadows = |page: &Page| shadows::choose(picture, page, price_per_byte, terms);
-    if let Some(page) = shading::choose(picture, price_per_byte) {
+    let shadows = |page: &Page| shadows::choose(picture, page, terms);
+    if let Some(page) = shading::choose(picture, terms.per_byte) {
         let shadows = page.shade.clone().map(|shade| shadows(&Page::Shade(shade)));
         let ground = std::iter::once(page).chain(shadows.into_iter().flatten());
         return (Background::None, ground.collect());

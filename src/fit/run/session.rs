@@ -505,11 +505,12 @@ fn choose_background(picture: &Image, task: &Task, price: Price) -> (Background,
             let terms = Terms {
                 doubt: task.doubt,
                 blurs: config.blurs,
+                per_byte: price.per_byte(),
                 has_things: config.marks() != Marks::Strokes,
                 price: |mark: &Mark| by_bytes.least_gain(mark),
             };
             // A rival by strokes lies on the ground of the drawing that it rivals.
-            let find = || background::with_ground(picture, price.per_byte(), &terms);
+            let find = || background::with_ground(picture, &terms);
             task.ground.get_or_init(find).clone()
         }
         false => (config.background, Vec::new()),

@@ -12,8 +12,6 @@ const MOST_REACH: f64 = 130.0;
 /// Largest blur and largest shift, in units of that reach.
 const BLUR_OF_REACH: f32 = 0.4;
 const SHIFT_OF_REACH: f32 = 0.5;
-/// Blocks along the longer side of a region, whose shares are fitted.
-const BLOCKS: usize = 160;
 /// Standard deviations of the blurs that are tried first, px.
 const BLURS: [f32; 8] = [1.5, 2.5, 4.0, 6.5, 10.0, 16.0, 26.0, 40.0];
 /// The factor between the best of these and its neighbours; its root is the next one, and so on.
@@ -71,15 +69,15 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// The search on the blocks of a region, if the share of any of them is seen. `share` is that of a pixel of the page, with
+    /// The search on so many blocks along the longer side of a region, if the share of any of them is seen. `share` is that of a pixel of the page, with
     /// the squared difference that the whole share makes.
     pub(super) fn of(
         (region, mask, reach): (&Region, &Plane, f32),
-        page: [usize; 2],
+        (page, blocks): ([usize; 2], usize),
         share: impl Fn(usize) -> Option<(f32, f32)>,
     ) -> Option<Self> {
         let [width, height] = region.size;
-        let side = width.max(height).div_ceil(BLOCKS).max(1);
+        let side = width.max(height).div_ceil(blocks).max(1);
         let columns = width.div_ceil(side);
         let count = columns * height.div_ceil(side);
         let block = |k: usize| k / width / side * columns + k % width / side;

@@ -98,6 +98,16 @@ impl<'a> Surfaces<'a> {
         self.seen.len()
     }
 
+    /// Width and height, px.
+    pub(super) fn size(&self) -> [usize; 2] {
+        [self.width(), self.len() / self.width()]
+    }
+
+    /// True if a pixel shows a surface like this.
+    pub(super) fn is(&self, i: usize, light: Light) -> bool {
+        self.seen[i].is_some_and(|(_, own)| own == light)
+    }
+
     /// The surface that a pixel shows, and how.
     pub(super) fn at(&self, i: usize) -> Option<(Surface, Light)> {
         self.seen[i]

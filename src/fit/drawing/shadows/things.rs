@@ -1,9 +1,13 @@
 //! The things of a picture, as they are traced in full light, and which of them cast shadows.
 
+use std::collections::BTreeSet;
+
 use kurbo::Rect;
 
+use super::ink;
 use super::region::Region;
-use super::surfaces::Surfaces;
+use super::shadow::Shadow;
+use super::surfaces::{FLAT, Light, Surfaces};
 use super::{Page, SHAPE};
 use crate::image::{Image, flooded};
 use crate::outline;
@@ -11,6 +15,7 @@ use crate::render::{Canvas, Plane};
 use crate::restore::Doubt;
 use crate::scene::{Area, Blurs, Mark, Marks, Path, Rgb, Shape};
 use crate::seed::{Pyramid, Residual};
+use crate::shading::Value;
 use crate::trace::{self, Tracing};
 
 /// The least share of its outline that a shadow is seen along. A guess.
@@ -19,12 +24,20 @@ const SURROUNDED: f32 = 0.3;
 const LEAST_SIDE: f64 = 6.0;
 /// Coverage from which on a thing hides what is below it.
 const HIDES: f32 = 0.02;
+/// Bytes of a shadow, about. A guess.
+const BYTES: f32 = 300.0;
+/// Share of the squared error around a thing that a blur of it leaves, from which on it is none, and the blocks along the longer side
+/// that this is found out on. Guesses: other shadows may be there as well.
+const UNLIKE: f32 = 0.4;
+const COARSE: usize = 40;
+/// Number of times that casters are looked for.
+const MOST_LOOKS: usize = 3;
 /// Most times that things are traced.
 const MOST_ROUNDS: usize = 6;
 /// Pixels beside a thing that its edge may change.
 const EDGE: usize = 2;
 /// Farthest that chords are from the curves of a ring whose sense is asked for, px.
-const FLAT: f64 = 1.0;
+const CHORDS: f64 = 1.0;
 
 /// The things on a page, back to front.
 pub(super) struct Things {
@@ -46,8 +59,17 @@ pub(in crate::fit) struct Terms<P> {
     pub(in crate::fit) blurs: Blurs,
     /// True if areas may lie below shadows.
     pub(in crate::fit) has_things: bool,
+    /// The squared error that a byte has to remove.
+    pub(in crate::fit) per_byte: f32,
     /// The squared error that a mark has to remove.
     pub(in crate::fit) price: P,
+}
+
+impl<P> Terms<P> {
+    /// The squared error that a shadow has to remove.
+    pub(super) fn price_of_shadow(&self) -> f32 {
+        self.per_byte * BYTES
+    }
 }
 
 impl Things {
@@ -58,7 +80,12 @@ impl Things {
         terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
     ) -> Self {
         let lit = surfaces.lit();
-        let mut things = Self::traced(&lit, &lit, surfaces, page, terms);
+        // Most pictures have no shadow, which is soon found out where edges need not be exact.
+        let things = Self::traced(&lit, &lit, false, surfaces, page, terms);
+        if things.casters.is_empty() {
+            return things;
+        }
+        let mut things = Self::traced(&lit, &lit, true, surfaces, page, terms);
         // What casts a shadow lies above what that is seen on. Where tracing thinks otherwise, it is told what is there without.
         let mut risen: Vec<Area> = Vec::new();
         for _ in 0..MOST_ROUNDS {
@@ -76,17 +103,18 @@ impl Things {
             }
             risen.push(area);
             let bare = without(&lit, &risen, surfaces);
-            things = Self::traced(&bare, &lit, surfaces, page, terms);
+            things = Self::traced(&bare, &lit, true, surfaces, page, terms);
             risen.iter().for_each(|area| things.add(area.clone()));
-            things.find_casters(surfaces);
+            things.find_casters(surfaces, terms.price_of_shadow());
         }
         things
     }
 
-    /// The things that are traced in `lit`, and those that show through holes of them in `whole`.
+    /// The things that are traced in `lit`, where they are seen if they may be, and those that show through holes of them in `whole`.
     fn traced(
         lit: &Image,
         whole: &Image,
+        may_place: bool,
         surfaces: &Surfaces<'_>,
         page: &Page,
         terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
@@ -111,7 +139,7 @@ impl Things {
             doubt: terms.doubt,
             has_shades: true,
             most: usize::MAX,
-            may_place: true,
+            may_place,
             is_of_details: false,
         };
         let residuals: Vec<Residual<'_>> = residuals.collect();
@@ -143,7 +171,7 @@ impl Things {
             }
         }
         windows.into_iter().for_each(|window| things.add(window));
-        things.find_casters(surfaces);
+        things.find_casters(surfaces, terms.price_of_shadow());
         things
     }
 
@@ -165,17 +193,72 @@ impl Things {
         let soft = border.iter().filter(|&&i| surfaces.is_soft(i)).count();
         let share = soft as f32 / border.len().max(1) as f32;
         let is_large = area.extent().size().min_side() >= LEAST_SIDE;
-        let is_caster = area.opacity >= 1.0 && is_large && share > SURROUNDED;
-        is_caster.then_some(share)
+        (area.opacity >= 1.0 && is_large && share > SURROUNDED).then_some(share)
     }
 
-    /// Finds the things that soft pixels surround, those that they surround most first.
-    fn find_casters(&mut self, surfaces: &Surfaces<'_>) {
+    /// Finds the things with soft pixels around them that a blur of them is like, and that gain `price` by it. Those that soft pixels
+    /// surround most come first.
+    fn find_casters(&mut self, surfaces: &Surfaces<'_>, price: f32) {
         let all = self.areas.iter().enumerate();
         let shares = all.filter_map(|(k, area)| Some((k, self.surrounded(area, surfaces)?)));
         let mut shares: Vec<(usize, f32)> = shares.collect();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        self.casters = shares.into_iter().map(|(k, _)| k).collect();
+        // Where shadows lie on each other, those that are found tell what is left for others.
+        let mut left: Vec<Value> = (0..surfaces.len()).map(|i| surfaces.value(i)).collect();
+        let mut is_found = vec![false; shares.len()];
+        for _ in 0..MOST_LOOKS {
+            let rest = (0..shares.len()).filter(|&n| !is_found[n]);
+            let of = |n: usize| {
+                Some((
+                    n,
+                    self.likely(&self.areas[shares[n].0], surfaces, &left, price)?,
+                ))
+            };
+            let found: Vec<(usize, Shadow)> = rest.filter_map(of).collect();
+            if found.is_empty() {
+                break;
+            }
+            for (n, shadow) in found {
+                is_found[n] = true;
+                for (i, share) in shadow.shares(self.size) {
+                    left[i] = shadow.below(left[i], share);
+                }
+            }
+        }
+        let found = shares.into_iter().zip(is_found);
+        self.casters = found
+            .filter(|(_, found)| *found)
+            .map(|((k, _), _)| k)
+            .collect();
+    }
+
+    /// The shadow of an area, if it is at all like what is left of soft pixels around it, and gains `price`.
+    fn likely(
+        &self,
+        area: &Area,
+        surfaces: &Surfaces<'_>,
+        left: &[Value],
+        price: f32,
+    ) -> Option<Shadow> {
+        let (region, mask) = covered(area, 0.0);
+        let own = region.pixels(self.size);
+        let own = own.filter(|(k, _)| mask.values[*k] >= HIDES);
+        let own: BTreeSet<usize> = own.map(|(_, i)| i).collect();
+        let known = |i: usize| {
+            let (surface, light) = surfaces.at(i)?;
+            let is_known = light != Light::Rim && !own.contains(&i);
+            is_known.then(|| (left[i], surfaces.base(surface, i)))
+        };
+        let shadow = Shadow::of(vec![area.clone()], self.size, COARSE, known)?;
+        let seen = shadow.shares(self.size).into_iter();
+        let seen = seen.filter(|&(_, share)| share > FLAT);
+        let errors = seen.filter_map(|(i, share)| {
+            let (value, base) = known(i)?;
+            let values = [value, shadow.below(value, share)];
+            Some(values.map(|value| ink::distance2(value, base)))
+        });
+        let [all, left] = errors.fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
+        (left <= UNLIKE * all && all - left >= price).then_some(shadow)
     }
 
     /// What a thing covers, with its holes where something lies in them.
@@ -280,7 +363,7 @@ fn without(lit: &Image, areas: &[Area], surfaces: &Surfaces<'_>) -> Image {
 /// The parts of an area that are apart: each outer ring, and then its holes.
 fn parts(area: Area) -> Vec<Area> {
     let sense = |ring: &Path| {
-        let corners = ring.flattened(FLAT);
+        let corners = ring.flattened(CHORDS);
         let sides = corners.iter().zip(corners.iter().cycle().skip(1));
         sides
             .map(|(a, b)| a.to_vec2().cross(b.to_vec2()))
