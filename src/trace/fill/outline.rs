@@ -314,6 +314,10 @@ fn extend(run: &[Sample], candidates: &[usize], a: usize, best: &mut [Best]) {
     let mut least = 0;
     let mut failed = 0;
     for b in a + 1..candidates.len() {
+        // Nothing from here can be cheaper, which is most pairs of a long run.
+        if best[a].cost + 1 + least >= best[b].cost {
+            continue;
+        }
         let samples = thinned(&run[candidates[a]..=candidates[b]]);
         let most = MOST.min(samples.len().saturating_sub(2));
         let found = (least..=most)
@@ -322,7 +326,6 @@ fn extend(run: &[Sample], candidates: &[usize], a: usize, best: &mut [Best]) {
                 let (span, worst) = fit(&samples, count);
                 (worst <= 1.0).then_some(span)
             });
-        let is_cheaper = best[a].cost + 1 + least < best[b].cost;
         match found {
             Some(span) => {
                 least = span.count.saturating_sub(1);
@@ -341,8 +344,7 @@ fn extend(run: &[Sample], candidates: &[usize], a: usize, best: &mut [Best]) {
                     span: Span::default(),
                 };
             }
-            None if is_cheaper => failed += 1,
-            None => {}
+            None => failed += 1,
         }
         if failed == 3 {
             return;

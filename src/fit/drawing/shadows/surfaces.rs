@@ -24,6 +24,9 @@ const STEP: f32 = 1.5 / 255.0;
 /// Reach of what is even, px, and what differs there, less than a level.
 const EVEN: usize = 4;
 const LEVEL: f32 = 0.5 / 255.0;
+/// Change of a shadow over that reach, in units of itself, and the largest share of a shadow that changes less.
+const CHANGE: f32 = 0.1;
+const MOST_EVEN: f32 = 0.5;
 /// Least depth of what is no blurred edge, px.
 const DEPTH: usize = 3;
 /// The least share of the pixels that a colour has to have to be a surface's.
@@ -85,7 +88,7 @@ impl<'a> Surfaces<'a> {
         for shade in surfaces.shades(&smooth) {
             surfaces.add(Base::Shade(shade), &smooth);
         }
-        surfaces.drop_bands();
+        surfaces.drop_others();
         surfaces.add_rims();
         surfaces
     }
@@ -173,21 +176,21 @@ impl<'a> Surfaces<'a> {
             })
     }
 
-    /// True for a pixel that has about one colour with those [`EVEN`] px away on all sides.
-    fn is_even(&self, i: usize) -> bool {
+    /// True for a pixel that those [`EVEN`] px away on all sides are at most this far from.
+    fn is_even(&self, i: usize, most: f32) -> bool {
         let (width, height) = (self.width(), self.len() / self.width());
         let [x, y] = [i % width, i / width];
         let row = [x.checked_sub(EVEN), Some(x + EVEN).filter(|&x| x < width)];
         let column = [y.checked_sub(EVEN), Some(y + EVEN).filter(|&y| y < height)];
         let row = row.into_iter().flatten().map(|x| y * width + x);
         let mut around = row.chain(column.into_iter().flatten().map(|y| y * width + x));
-        around.all(|k| away(self.value(k), self.value(i)) <= LEVEL)
+        around.all(|k| away(self.value(k), self.value(i)) <= most)
     }
 
     /// The colours that enough pixels have where nothing changes, the most common first.
     fn colors(&self) -> Vec<Value> {
         let mut counts = BTreeMap::<[u8; 4], usize>::new();
-        for i in (0..self.len()).filter(|&i| self.seen[i].is_none() && self.is_even(i)) {
+        for i in (0..self.len()).filter(|&i| self.seen[i].is_none() && self.is_even(i, LEVEL)) {
             let level = self.value(i).map(|v| (255.0 * v).round() as u8);
             *counts.entry(level).or_default() += 1;
         }
@@ -281,8 +284,8 @@ impl<'a> Surfaces<'a> {
         }
     }
 
-    /// Drops soft parts that are nowhere so deep that they are no blurred edge.
-    fn drop_bands(&mut self) {
+    /// Drops soft parts that are no shadow: those that are nowhere so deep that they are no blurred edge, and those of one colour.
+    fn drop_others(&mut self) {
         let size = [self.width(), self.len()];
         let is_soft: Vec<bool> = (0..self.len()).map(|i| self.is_soft(i)).collect();
         let mut is_deep = is_soft.clone();
@@ -290,15 +293,27 @@ impl<'a> Surfaces<'a> {
             let is_inner = |i: usize| is_deep[i] && beside(i, size[0], size[1]).all(|k| is_deep[k]);
             is_deep = (0..size[1]).map(is_inner).collect();
         }
-        let deep: Vec<usize> = (0..size[1]).filter(|&i| is_deep[i]).collect();
-        flooded(deep, size, |i, k| {
-            let is_same =
-                is_soft[k] && self.seen[i].map(|own| own.0) == self.seen[k].map(|own| own.0);
-            is_same && !std::mem::replace(&mut is_deep[k], true)
-        });
-        for i in (0..size[1]).filter(|&i| is_soft[i] && !is_deep[i]) {
-            self.seen[i] = None;
+        let mut known = vec![false; self.len()];
+        for start in (0..self.len()).filter(|&i| is_soft[i]) {
+            if std::mem::replace(&mut known[start], true) {
+                continue;
+            }
+            let surface = self.seen[start].map(|own| own.0);
+            let part = flooded(vec![start], size, |_, k| {
+                let is_same = is_soft[k] && self.seen[k].map(|own| own.0) == surface;
+                is_same && !std::mem::replace(&mut known[k], true)
+            });
+            let even = part.iter().filter(|&&i| self.is_plateau(i)).count();
+            if !part.iter().any(|&i| is_deep[i]) || even as f32 > MOST_EVEN * part.len() as f32 {
+                part.into_iter().for_each(|i| self.seen[i] = None);
+            }
         }
+    }
+
+    /// True for a soft pixel around which the difference from full light hardly changes.
+    fn is_plateau(&self, i: usize) -> bool {
+        let base = self.seen[i].map(|(surface, _)| self.base(surface, i));
+        base.is_some_and(|base| self.is_even(i, CHANGE * away(self.value(i), base)))
     }
 
     /// Adds the pixels between soft ones and an edge. The edge is within reach of them, so that they are not smooth.

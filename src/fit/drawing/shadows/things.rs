@@ -80,12 +80,7 @@ impl Things {
         terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
     ) -> Self {
         let lit = surfaces.lit();
-        // Most pictures have no shadow, which is soon found out where edges need not be exact.
-        let things = Self::traced(&lit, &lit, false, surfaces, page, terms);
-        if things.casters.is_empty() {
-            return things;
-        }
-        let mut things = Self::traced(&lit, &lit, true, surfaces, page, terms);
+        let mut things = Self::traced(&lit, &lit, surfaces, page, terms);
         // What casts a shadow lies above what that is seen on. Where tracing thinks otherwise, it is told what is there without.
         let mut risen: Vec<Area> = Vec::new();
         for _ in 0..MOST_ROUNDS {
@@ -103,18 +98,17 @@ impl Things {
             }
             risen.push(area);
             let bare = without(&lit, &risen, surfaces);
-            things = Self::traced(&bare, &lit, true, surfaces, page, terms);
+            things = Self::traced(&bare, &lit, surfaces, page, terms);
             risen.iter().for_each(|area| things.add(area.clone()));
             things.find_casters(surfaces, terms.price_of_shadow());
         }
         things
     }
 
-    /// The things that are traced in `lit`, where they are seen if they may be, and those that show through holes of them in `whole`.
+    /// The things that are traced in `lit`, and those that show through holes of them in `whole`.
     fn traced(
         lit: &Image,
         whole: &Image,
-        may_place: bool,
         surfaces: &Surfaces<'_>,
         page: &Page,
         terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
@@ -139,7 +133,7 @@ impl Things {
             doubt: terms.doubt,
             has_shades: true,
             most: usize::MAX,
-            may_place,
+            may_place: true,
             is_of_details: false,
         };
         let residuals: Vec<Residual<'_>> = residuals.collect();
