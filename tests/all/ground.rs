@@ -3,8 +3,9 @@
 use crate::support::{draft, drawn, on_white, rendered, sample};
 use strokefit::fit::{Background, Base, Colors, Config, Fitter};
 use strokefit::image::Image;
+use strokefit::machine::{self, Sheet};
 use strokefit::metrics::Quality;
-use strokefit::scene::{Scene, Shape};
+use strokefit::scene::{Blurs, Scene, Shape};
 use strokefit::{svg, verify};
 
 /// A ramp with a red square on it.
@@ -91,15 +92,16 @@ fn judged(picture: &Image, config: &Config) -> (Scene, Quality) {
 }
 
 #[test]
-fn cards_that_are_lighter_than_their_page_have_one_shadow() {
+fn cards_that_are_lighter_than_their_page_have_a_shadow_each() {
     let cards = r##"<g fill="#141850" fill-opacity="0.25" filter="url(#f)"><rect x="14" y="28" width="64" height="80" rx="8"/><rect x="92" y="28" width="64" height="80" rx="8"/></g>
 <g fill="#fff"><rect x="14" y="20" width="64" height="80" rx="8"/><rect x="92" y="20" width="64" height="80" rx="8"/></g>"##;
     let (scene, fidelity) = judged(&picture(Some("#f6f7fb"), 5.0, cards), &Config::default());
-    let [shadow] = &scene.ground[..] else {
-        panic!("{:?}", scene.ground);
-    };
-    assert!((shadow.blur - 5.0).abs() < 0.8, "{shadow:?}");
-    assert_eq!((shadow.rings.len(), scene.len()), (2, 2));
+    assert_eq!((scene.ground.len(), scene.len()), (2, 2));
+    for shadow in &scene.ground {
+        assert!((shadow.blur - 5.0).abs() < 0.8, "{shadow:?}");
+        let shape = shadow.rings[0].shape();
+        assert!(matches!(shape, Some(Shape::Rect { .. })), "{shadow:?}");
+    }
     assert!(fidelity.ssimulacra2 > 85.0, "{fidelity:?}");
 }
 
@@ -145,6 +147,89 @@ fn a_card_casts_the_shadow_that_was_drawn() {
     let sides = [low.x - 30.0, low.y - 34.0, high.x - 140.0, high.y - 94.0];
     assert!(sides.iter().all(|off| off.abs() < 1.5), "{shadow:?}");
     assert!(scene.len() <= 4 && fidelity.psnr_db > 46.0, "{fidelity:?}");
+}
+
+/// True for each area of the ground that is blurred.
+fn blurs(scene: &Scene) -> Vec<bool> {
+    scene.ground.iter().map(|area| area.blur > 0.0).collect()
+}
+
+#[test]
+fn a_card_on_a_card_casts_its_shadow_on_that() {
+    let cards = r##"<rect x="16" y="18" width="138" height="100" rx="10" fill="#203060" fill-opacity="0.35" filter="url(#f)"/>
+<rect x="16" y="14" width="138" height="100" rx="10" fill="#fff"/>
+<rect x="50" y="46" width="70" height="40" rx="6" fill="#203060" fill-opacity="0.5" filter="url(#f)"/>
+<rect x="50" y="42" width="70" height="40" rx="6" fill="#ffd76e"/>"##;
+    let (scene, fidelity) = judged(&picture(Some("#e8ecf4"), 4.0, cards), &Config::default());
+    assert_eq!(blurs(&scene), [true, false, true], "{:?}", scene.ground);
+    assert_eq!(scene.ground[1].color, [1.0; 3]);
+    for shadow in [&scene.ground[0], &scene.ground[2]] {
+        assert!((shadow.blur - 4.0).abs() < 0.8, "{shadow:?}");
+    }
+    assert!(scene.len() == 1 && fidelity.psnr_db > 46.0, "{fidelity:?}");
+}
+
+#[test]
+fn a_shadow_across_two_colours_is_one() {
+    let card = r##"<rect y="60" width="170" height="70" fill="#3556d8"/><circle cx="85" cy="66" r="36" fill="#000" fill-opacity="0.3" filter="url(#f)"/><circle cx="85" cy="60" r="36" fill="#fff"/>"##;
+    let (scene, fidelity) = judged(&picture(Some("#ffcf5a"), 5.0, card), &Config::default());
+    assert_eq!(blurs(&scene), [false, true], "{:?}", scene.ground);
+    let shadow = &scene.ground[1];
+    // Black is where the lines of both colours meet.
+    assert!(shadow.color.iter().all(|c| *c < 0.06), "{shadow:?}");
+    assert!((shadow.opacity - 0.3).abs() < 0.03, "{shadow:?}");
+    assert!(matches!(
+        shadow.rings[0].shape(),
+        Some(Shape::Circle { .. })
+    ));
+    assert!(scene.len() == 1 && fidelity.psnr_db > 46.0, "{fidelity:?}");
+}
+
+/// A white glyph with a shadow on a tile with a gradient, on a page of the glyph's colour.
+const TILE: &str = r##"<defs><linearGradient id="g" x2="0" y2="1"><stop stop-color="#2bb673"/><stop offset="1" stop-color="#0b6e4f"/></linearGradient></defs>
+<rect x="15" y="5" width="140" height="120" rx="26" fill="url(#g)"/>
+<path d="M60 36h54v18h-34v16h28v18h-28v30h-20z" fill="#000" fill-opacity="0.4" filter="url(#f)"/>
+<path d="M60 32h54v18h-34v16h28v18h-28v30h-20z" fill="#fff"/>"##;
+
+#[test]
+fn a_glyph_casts_its_shadow_on_a_gradient() {
+    let (scene, fidelity) = judged(&picture(Some("#fff"), 4.0, TILE), &Config::default());
+    assert_eq!(blurs(&scene), [false, true], "{:?}", scene.ground);
+    assert!(scene.ground[0].shade.is_some());
+    assert!((scene.ground[1].blur - 4.0).abs() < 0.8);
+    assert!(scene.len() == 1 && fidelity.psnr_db > 44.0, "{fidelity:?}");
+}
+
+#[test]
+fn steps_are_shadows_without_filters() {
+    let config = Config {
+        blurs: Blurs::Steps,
+        ..Config::default()
+    };
+    let tile = picture(Some("#fff"), 4.0, TILE);
+    let fit = drawn(&tile, &config);
+    let text = fit.svg();
+    assert!(
+        !text.contains("filter") && fit.scene.ground.len() > 8,
+        "{text}"
+    );
+    assert_eq!(svg::read(&text).unwrap(), fit.scene);
+    let verdict = verify::verify(&text, &fit.target, &fit.soft, fit.matte).unwrap();
+    assert!(verdict.fidelity.psnr_db > 40.0, "{verdict:?}");
+}
+
+#[test]
+fn machines_cut_what_lies_below_shadows() {
+    let fit = drawn(&picture(Some("#fff"), 4.0, TILE), &Config::default());
+    let text = |scene: &Scene| {
+        let sheet = Sheet { scene, width: None };
+        machine::dxf(&sheet)
+    };
+    let bare = Scene {
+        ground: Vec::new(),
+        ..fit.scene.clone()
+    };
+    assert!(text(&fit.scene).len() > text(&bare).len());
 }
 
 #[test]

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use crate::math::{self, Point, Vec2};
 use crate::scene::{
     Arc, Area, Axis, Cap, MAX_STOPS, Mark, Path, PathPoint, PointKind, Scene, Shade, ShadeStop,
-    Shape, Stage, Stroke,
+    Shape, Stage, Stroke, quantized_anywhere,
 };
 use crate::svg::{Form, Group, WriteOptions};
 
@@ -229,7 +229,7 @@ pub(super) fn scene() -> impl Strategy<Value = Scene> {
         1..100_u32,
         background,
         prop::option::of(shade()),
-        prop::collection::vec(shadow(), 0..3),
+        prop::collection::vec(prop_oneof![shadow(), thing()], 0..4),
         prop::collection::vec(stage, 0..4),
     )
         .prop_map(|(width, height, background, shade, shadows, stages)| {
@@ -241,6 +241,11 @@ pub(super) fn scene() -> impl Strategy<Value = Scene> {
                 ..Scene::empty(width, height, background)
             }
         })
+}
+
+/// A thing below shadows, unless nothing of it is left.
+fn thing() -> impl Strategy<Value = Option<Area>> {
+    area().prop_map(|area| quantized_anywhere(&area.into(), 2)?.as_area().cloned())
 }
 
 /// A shadow, unless nothing of it is left.

@@ -131,3 +131,45 @@ pub(super) fn share(value: Value, base: Value, ink: Value) -> (f32, f32) {
     let mixed = std::array::from_fn(|c| base[c] + share * (ink[c] - base[c]));
     (share, away(value, mixed))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Soft pixels of `ink` on a surface, 8 bits.
+    fn soft(base: Value, ink: Value) -> impl Iterator<Item = (Value, Value)> {
+        let mixed = move |share: f32| {
+            let value = |c: usize| base[c] + share * (ink[c] - base[c]);
+            (
+                std::array::from_fn(|c| (255.0 * value(c)).round() / 255.0),
+                base,
+            )
+        };
+        (1..30).map(move |k| mixed(k as f32 / 100.0))
+    }
+
+    #[test]
+    fn the_ink_is_where_the_lines_of_two_surfaces_meet() {
+        let ink = [0.24, 0.24, 0.43, 1.0];
+        let on = [[0.96, 0.97, 0.98, 1.0], [0.9, 0.4, 0.1, 1.0]];
+        let found = of(on.into_iter().flat_map(|base| soft(base, ink)), 0.016).unwrap();
+        assert!(away(found, ink) < 0.08, "{found:?}");
+    }
+
+    #[test]
+    fn on_one_surface_the_ink_is_as_far_as_a_colour_can_be() {
+        let found = of(soft([1.0, 1.0, 1.0, 1.0], [0.5, 0.5, 0.75, 1.0]), 0.016).unwrap();
+        assert!(away(found, [0.0, 0.0, 0.5, 1.0]) < 0.03, "{found:?}");
+        // Of a page without colour it is opaque.
+        let found = of(soft([0.0; 4], [0.2, 0.4, 0.6, 1.0]), 0.016).unwrap();
+        assert!(away(found, [0.2, 0.4, 0.6, 1.0]) < 0.05, "{found:?}");
+    }
+
+    #[test]
+    fn what_is_off_the_mixture_does_not_count() {
+        let black = soft([1.0; 4], [0.0, 0.0, 0.0, 1.0]);
+        let red = (0..5).map(|_| ([1.0, 0.7, 0.7, 1.0], [1.0; 4]));
+        let found = of(black.chain(red), 0.016).unwrap();
+        assert!(away(found, [0.0, 0.0, 0.0, 1.0]) < 0.03, "{found:?}");
+    }
+}
