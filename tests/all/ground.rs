@@ -201,6 +201,27 @@ fn a_glyph_casts_its_shadow_on_a_gradient() {
 }
 
 #[test]
+fn a_ball_casts_an_ellipse_on_the_floor() {
+    let ball = r##"<rect y="80" width="170" height="50" fill="#d9b48a"/><ellipse cx="85" cy="104" rx="46" ry="9" fill="#3a2208" fill-opacity="0.5" filter="url(#f)"/><circle cx="85" cy="62" r="40" fill="#d9483b"/>"##;
+    let (scene, fidelity) = judged(&picture(Some("#bfe3ee"), 4.0, ball), &Config::default());
+    assert_eq!(blurs(&scene), [false, true], "{:?}", scene.ground);
+    let Some(Shape::Ellipse { center, radii }) = scene.ground[1].rings[0].shape() else {
+        panic!("{:?}", scene.ground[1]);
+    };
+    let off = [
+        center.x - 85.0,
+        center.y - 104.0,
+        radii[0] - 46.0,
+        radii[1] - 9.0,
+    ];
+    assert!(
+        off.iter().all(|off| off.abs() < 4.0),
+        "{center:?} {radii:?}"
+    );
+    assert!(scene.len() == 1 && fidelity.psnr_db > 44.0, "{fidelity:?}");
+}
+
+#[test]
 fn steps_are_shadows_without_filters() {
     let config = Config {
         blurs: Blurs::Steps,

@@ -4,6 +4,7 @@
 //! surfaces  what shadows fall on, the soft pixels on it, and the picture in full light
 //! things    the shapes of that, back to front, and which of them soft pixels surround
 //! groups    which of them cast their shadows together, and what these are seen on
+//! floor     shadows of no thing's shape
 //! shadow    the blurs of a shape, in one ink
 //! ink       the colour that a shadow mixes surfaces with
 //! caster    the search for a blur
@@ -14,6 +15,7 @@
 //! A shadow lies below what casts it and on all that is below that. So the things that a shadow is seen on go with it below the marks.
 
 mod caster;
+mod floor;
 mod groups;
 mod ink;
 mod region;
@@ -76,8 +78,9 @@ fn found(
     // 2. The things in full light, and those that soft pixels surround.
     let things = Things::of(&surfaces, page, terms);
     // 3. Blurs of these that explain soft pixels and pay, with what they are seen on.
-    let ground = Scene::new(&surfaces, &things).ground(terms.price_of_shadow());
-    let ground = ground.into_iter();
+    let (scene, price) = (Scene::new(&surfaces, &things), terms.price_of_shadow());
+    let groups = scene.with_floors(scene.groups(), price);
+    let ground = scene.ground(groups, price).into_iter();
     Some(match terms.blurs {
         Blurs::Filter => ground.collect(),
         Blurs::Steps => ground.flat_map(without_blur).collect(),

@@ -15,7 +15,7 @@ const MOST_CASTERS: usize = 16;
 /// Number of times that their shadows are fitted beside each other.
 const ROUNDS: usize = 2;
 /// Blocks that shadows are fitted to, along the longer side of where they are.
-const BLOCKS: usize = 160;
+pub(super) const BLOCKS: usize = 160;
 /// All shadows of a thing have to leave less than this share of the squared error, where they are seen.
 const LEFT: f32 = 0.03;
 /// Decimals of things that shadows are seen on.
@@ -23,16 +23,16 @@ const PRECISION: u8 = 2;
 
 /// The things of a picture, and the surfaces that their shadows are seen on.
 pub(super) struct Scene<'a> {
-    surfaces: &'a Surfaces<'a>,
-    things: &'a Things,
-    values: Vec<Value>,
+    pub(super) surfaces: &'a Surfaces<'a>,
+    pub(super) things: &'a Things,
+    pub(super) values: Vec<Value>,
 }
 
 /// Things that cast their shadows as one.
-struct Group {
+pub(super) struct Group {
     /// Rising.
-    things: Vec<usize>,
-    shadow: Shadow,
+    pub(super) things: Vec<usize>,
+    pub(super) shadow: Shadow,
 }
 
 impl Group {
@@ -52,9 +52,9 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The shadows that explain what is soft and gain `price` each, and the things that they are seen on, back to front.
-    pub(super) fn ground(&self, price: f32) -> Vec<Area> {
-        let groups = self.groups();
+    /// The shadows of those groups that explain what is soft and gain `price` each, and the things that they are seen on, back to front.
+    pub(super) fn ground(&self, groups: Vec<Group>, price: f32) -> Vec<Area> {
+        let groups = self.explained(groups);
         let left = self.without(&groups);
         let mut layers: BTreeMap<(usize, bool), Vec<Area>> = BTreeMap::new();
         for group in &groups {
@@ -79,7 +79,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The groups of casters whose shadows explain what is soft: all as one, or each its own if that leaves less.
-    fn groups(&self) -> Vec<Group> {
+    pub(super) fn groups(&self) -> Vec<Group> {
         let casters = &self.things.casters;
         // 1. As one, unless one lies on another.
         let all = match casters.is_empty() || self.is_stack() {
@@ -149,7 +149,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The surface in full light at a pixel that shows how a shadow below a thing falls.
-    fn shows(&self, i: usize, below: usize) -> Option<Value> {
+    pub(super) fn shows(&self, i: usize, below: usize) -> Option<Value> {
         let (surface, light) = self.surfaces.at(i)?;
         // What a fit would move is no part of the ground.
         let is_below = self.things.top[i].is_none_or(|top| self.things.may_be_below && top < below);
@@ -167,7 +167,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The values without the shadows of groups.
-    fn without<'g>(&self, groups: impl IntoIterator<Item = &'g Group>) -> Vec<Value> {
+    pub(super) fn without<'g>(&self, groups: impl IntoIterator<Item = &'g Group>) -> Vec<Value> {
         let mut left = self.values.clone();
         for Group { things, shadow } in groups {
             for (i, share) in shadow.shares(self.surfaces.size()) {

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::surfaces::away;
 use crate::shading::Value;
 
 /// Number of times that the ink is found, each time from the pixels near the last one.
@@ -74,6 +73,11 @@ fn vector(value: Value) -> Vector4<f64> {
 
 fn minus(a: Value, b: Value) -> Value {
     std::array::from_fn(|c| a[c] - b[c])
+}
+
+/// The largest difference of two values.
+pub(super) fn away(a: Value, b: Value) -> f32 {
+    (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max)
 }
 
 /// The squared distance of two values.

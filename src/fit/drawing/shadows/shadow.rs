@@ -3,9 +3,9 @@
 use kurbo::Rect;
 
 use super::caster::{self, Cast, Search};
-use super::ink;
+use super::ink::{self, away};
 use super::region::Region;
-use super::surfaces::{FLAT, MIXED, away};
+use super::surfaces::{FLAT, MIXED};
 use super::{OUTLINE_OF_BLUR, SHAPE};
 use crate::math;
 use crate::render::{Plane, blurred};
@@ -90,6 +90,22 @@ impl Shadow {
         }
         let pixels = self.region.pixels(size);
         pixels.map(|(k, i)| (i, 1.0 - through[k])).collect()
+    }
+
+    /// The squared error of what `known` tells of the pixels where it is seen: from full light, and without the shadow.
+    pub(super) fn errors(
+        &self,
+        size: [usize; 2],
+        known: impl Fn(usize) -> Option<(Value, Value)>,
+    ) -> [f32; 2] {
+        let seen = self.shares(size).into_iter();
+        let seen = seen.filter(|&(_, share)| share > FLAT);
+        let errors = seen.filter_map(|(i, share)| {
+            let (value, base) = known(i)?;
+            let values = [value, self.below(value, share)];
+            Some(values.map(|value| ink::distance2(value, base)))
+        });
+        errors.fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
     }
 
     /// The value below a share of its ink.

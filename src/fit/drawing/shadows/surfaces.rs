@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::ink;
+use super::ink::{self, away};
 use crate::image::{Image, beside, flooded};
 use crate::math::Point;
 use crate::scene::Shade;
@@ -423,9 +423,4 @@ struct Edge {
     shown: f32,
     /// What the pixel is short of full light.
     lacks: Value,
-}
-
-/// The largest difference of two values.
-pub(super) fn away(a: Value, b: Value) -> f32 {
-    (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max)
 }

@@ -4,10 +4,9 @@ use std::collections::BTreeSet;
 
 use kurbo::Rect;
 
-use super::ink;
 use super::region::Region;
 use super::shadow::Shadow;
-use super::surfaces::{FLAT, Light, Surfaces};
+use super::surfaces::{Light, Surfaces};
 use super::{Page, SHAPE};
 use crate::image::{Image, flooded};
 use crate::outline;
@@ -240,18 +239,13 @@ impl Things {
         let own: BTreeSet<usize> = own.map(|(_, i)| i).collect();
         let known = |i: usize| {
             let (surface, light) = surfaces.at(i)?;
-            let is_known = light != Light::Rim && !own.contains(&i);
+            // What a fit would move is no part of the ground.
+            let is_ground = self.may_be_below || self.top[i].is_none();
+            let is_known = light != Light::Rim && is_ground && !own.contains(&i);
             is_known.then(|| (left[i], surfaces.base(surface, i)))
         };
         let shadow = Shadow::of(vec![area.clone()], self.size, COARSE, known)?;
-        let seen = shadow.shares(self.size).into_iter();
-        let seen = seen.filter(|&(_, share)| share > FLAT);
-        let errors = seen.filter_map(|(i, share)| {
-            let (value, base) = known(i)?;
-            let values = [value, shadow.below(value, share)];
-            Some(values.map(|value| ink::distance2(value, base)))
-        });
-        let [all, left] = errors.fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
+        let [all, left] = shadow.errors(self.size, known);
         (left <= UNLIKE * all && all - left >= price).then_some(shadow)
     }
 
