@@ -44,7 +44,10 @@ pub(in crate::fit) fn with_ground(
     picture: &Image,
     terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
 ) -> (Background, Vec<Area>) {
-    let shadows = |page: &Page| shadows::choose(picture, page, terms);
+    let shadows = |page: &Page| match terms.is_short {
+        true => Vec::new(),
+        false => shadows::choose(picture, page, terms),
+    };
     if let Some(page) = shading::choose(picture, terms.per_byte) {
         let shadows = page.shade.clone().map(|shade| shadows(&Page::Shade(shade)));
         let ground = std::iter::once(page).chain(shadows.into_iter().flatten());

@@ -36,6 +36,8 @@ use crate::svg::Form;
 /// Weight of errors near lost details. 5, 8, 16: a label of a map correlates by 0.957, 0.970, 0.980 with the picture; borders of 1 px
 /// take 8.8, 10.9, 13.2 kB, 75, 82, 84 % of them kept (1, 49 % in 5.6 kB).
 const LOST_WEIGHT: f32 = 8.0;
+/// Time that shadows may take to be found: 0.1 to 2 s, of 108 pictures.
+const SHADOWS: Duration = Duration::from_secs(2);
 /// Layers are joined that would take more than this share of the bytes. A guess.
 const LAYERS_SHARE: f64 = 0.03;
 /// Iterations of the polish that follows the recovery of details, in units of the first polish's. A guess.
@@ -506,6 +508,7 @@ fn choose_background(picture: &Image, task: &Task, price: Price) -> (Background,
                 doubt: task.doubt,
                 blurs: config.blurs,
                 per_byte: price.per_byte(),
+                is_short: config.budget.time.is_some_and(|time| time < SHADOWS),
                 has_things: config.marks() != Marks::Strokes,
                 price: |mark: &Mark| by_bytes.least_gain(mark),
             };

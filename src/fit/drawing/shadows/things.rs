@@ -56,6 +56,8 @@ pub(in crate::fit) struct Terms<P> {
     pub(in crate::fit) doubt: Doubt,
     /// How shadows are drawn.
     pub(in crate::fit) blurs: Blurs,
+    /// True if there is no time to look for shadows.
+    pub(in crate::fit) is_short: bool,
     /// True if areas may lie below shadows.
     pub(in crate::fit) has_things: bool,
     /// The squared error that a byte has to remove.
