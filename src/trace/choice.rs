@@ -91,7 +91,7 @@ impl<'a> Choice<'a> {
     /// draw them, each as its shape and its region.
     pub(super) fn fitted(
         &self,
-        price: &(impl Fn(&Mark) -> f32 + Sync),
+        price: &(dyn Fn(&Mark) -> f32 + Sync),
     ) -> Result<Vec<Traced>, Vec<(u32, u32)>> {
         let Self { flat, strokes, .. } = self;
         let fills = flat.fills();
@@ -128,7 +128,7 @@ impl<'a> Choice<'a> {
 
     /// The marks that draw the picture where their edges are seen, in painting order; `None` where shapes come
     /// apart, edges are long, lines are left that nothing draws, or colours do not tell where edges are.
-    pub(super) fn placed(&self, price: &(impl Fn(&Mark) -> f32 + Sync)) -> Option<Vec<Traced>> {
+    pub(super) fn placed(&self, price: &(dyn Fn(&Mark) -> f32 + Sync)) -> Option<Vec<Traced>> {
         // Where lines join blobs of their colour is no edge, so that descents find it.
         if self.flat.is_apart() || self.is_long() {
             return None;
@@ -160,7 +160,7 @@ impl<'a> Choice<'a> {
         fills: &[Fill<R>],
         drawn: Vec<Option<Vec<Stroke>>>,
         mut won: Vec<bool>,
-        price: &(impl Fn(&Mark) -> f32 + Sync),
+        price: &(dyn Fn(&Mark) -> f32 + Sync),
     ) -> Result<Chosen, Vec<(u32, u32)>> {
         let Self {
             flat,
@@ -277,7 +277,7 @@ impl<'a> Choice<'a> {
         &self,
         group: &Group,
         fills: &[Fill],
-        price: &(impl Fn(&Mark) -> f32 + Sync),
+        price: &(dyn Fn(&Mark) -> f32 + Sync),
     ) -> bool {
         let strokes = self.strokes_of(group).into_iter();
         let of_strokes: f32 = strokes

@@ -76,7 +76,7 @@ pub fn trace(
     residuals: &[Residual<'_>],
     tracing: Tracing,
     marks: Marks,
-    price: impl Fn(&Mark) -> f32 + Sync,
+    price: &(dyn Fn(&Mark) -> f32 + Sync),
 ) -> Vec<Traced> {
     let Some(mut pixels) = Pixels::of(residuals) else {
         return Vec::new();
@@ -96,7 +96,7 @@ fn marks_of(
     mattes: usize,
     tracing: Tracing,
     marks: Marks,
-    price: impl Fn(&Mark) -> f32 + Sync,
+    price: &(dyn Fn(&Mark) -> f32 + Sync),
 ) -> Vec<Traced> {
     // Areas of one colour. A picture without them, such as a photograph, has no lines that could be traced.
     let areas = Areas::of(pixels, tracing);
@@ -116,7 +116,7 @@ fn marks_of(
             return strokes.into_iter().map(Traced::from).collect();
         };
         let choice = Choice::of(&flat, strokes, pixels);
-        let placed = tracing.may_place.then(|| choice.placed(&price)).flatten();
+        let placed = tracing.may_place.then(|| choice.placed(price)).flatten();
         // A drawing of lines stays one where they are not found before a descent.
         let has_areas = |traced: &[Traced]| traced.iter().any(|t| t.mark.as_area().is_some());
         if let Some(placed) = &placed
@@ -124,7 +124,7 @@ fn marks_of(
         {
             return placed.clone();
         }
-        match choice.fitted(&price) {
+        match choice.fitted(price) {
             Ok(traced) => return placed.filter(|_| has_areas(&traced)).unwrap_or(traced),
             // What strokes do not draw stays with what it came apart from.
             Err(lines) => {

@@ -46,7 +46,7 @@ fn traced_on(pictures: &[(Image, Rgb)], marks: Marks) -> Vec<Traced> {
         may_place: true,
         is_of_details: false,
     };
-    trace(&residuals, tracing, marks, price)
+    trace(&residuals, tracing, marks, &price)
 }
 
 fn traced(content: &str, marks: Marks) -> Vec<Traced> {

@@ -7,7 +7,7 @@ use crate::fit::drawing::shading;
 use crate::fit::drawing::shadows::{self, Page, Terms};
 use crate::image::Image;
 use crate::math;
-use crate::scene::{Area, Mark, Rgb};
+use crate::scene::{Area, Rgb};
 
 /// Least share of the pixels that have the most common colour if that becomes the background; otherwise the mean colour does.
 const PREVAILING_SHARE: f64 = 0.25;
@@ -40,10 +40,7 @@ pub(in crate::fit) fn for_strokes(
 }
 
 /// The background and the ground of a new drawing. A gradient replaces the background, and shadows lie on a page that stays.
-pub(in crate::fit) fn with_ground(
-    picture: &Image,
-    terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
-) -> (Background, Vec<Area>) {
+pub(in crate::fit) fn with_ground(picture: &Image, terms: &Terms<'_>) -> (Background, Vec<Area>) {
     let shadows = |page: &Page| match terms.is_short {
         true => Vec::new(),
         false => shadows::choose(picture, page, terms),

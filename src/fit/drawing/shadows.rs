@@ -26,7 +26,7 @@ mod things;
 
 use crate::image::Image;
 use crate::math;
-use crate::scene::{Area, Blurs, Mark, Rgb, Shade};
+use crate::scene::{Area, Blurs, Rgb, Shade};
 use crate::shading::Blocks;
 use groups::Scene;
 use surfaces::{Base, MIXED, Surfaces};
@@ -55,20 +55,12 @@ pub(in crate::fit) enum Page {
 }
 
 /// The shadows of `picture`, and the things that they are seen on, back to front. There is none if nothing is soft on a surface, or
-/// the blurs of a shape do not explain it, or their bytes cost more than they gain at `price_per_byte`.
-pub(in crate::fit) fn choose(
-    picture: &Image,
-    page: &Page,
-    terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
-) -> Vec<Area> {
+/// the blurs of a shape do not explain it, or their bytes cost more than they gain.
+pub(in crate::fit) fn choose(picture: &Image, page: &Page, terms: &Terms<'_>) -> Vec<Area> {
     found(picture, page, terms).unwrap_or_default()
 }
 
-fn found(
-    picture: &Image,
-    page: &Page,
-    terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
-) -> Option<Vec<Area>> {
+fn found(picture: &Image, page: &Page, terms: &Terms<'_>) -> Option<Vec<Area>> {
     // 1. The soft pixels, unless one gradient explains them.
     let surfaces = Surfaces::of(picture, page.base());
     let [seen, soft] = surfaces.shares();

@@ -139,7 +139,9 @@ pub(super) fn paying(
     let residuals: Vec<_> = surfaces.map(|(s, canvas)| s.residual_of(canvas)).collect();
     // Areas and strokes compete by their bytes alone; whether each is worth its price is asked below.
     let by_bytes = price.of_bytes_alone();
-    let mut traced = trace(&residuals, tracing, marks, |mark| by_bytes.least_gain(mark));
+    let mut traced = trace(&residuals, tracing, marks, &|mark| {
+        by_bytes.least_gain(mark)
+    });
     if config.opaque {
         let translucent = traced.iter_mut().filter(|t| t.mark.opacity() < 1.0);
         translucent.for_each(|t| make_opaque(&mut t.mark));

@@ -510,7 +510,7 @@ fn choose_background(picture: &Image, task: &Task, price: Price) -> (Background,
                 per_byte: price.per_byte(),
                 is_short: config.budget.time.is_some_and(|time| time < SHADOWS),
                 has_things: config.marks() != Marks::Strokes,
-                price: |mark: &Mark| by_bytes.least_gain(mark),
+                price: &|mark: &Mark| by_bytes.least_gain(mark),
             };
             // A rival by strokes lies on the ground of the drawing that it rivals.
             let find = || background::with_ground(picture, &terms);

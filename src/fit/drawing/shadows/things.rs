@@ -51,8 +51,8 @@ pub(super) struct Things {
 }
 
 /// What the choice of shadows needs to know.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::fit) struct Terms<P> {
+#[derive(Clone, Copy)]
+pub(in crate::fit) struct Terms<'a> {
     pub(in crate::fit) doubt: Doubt,
     /// How shadows are drawn.
     pub(in crate::fit) blurs: Blurs,
@@ -63,10 +63,10 @@ pub(in crate::fit) struct Terms<P> {
     /// The squared error that a byte has to remove.
     pub(in crate::fit) per_byte: f32,
     /// The squared error that a mark has to remove.
-    pub(in crate::fit) price: P,
+    pub(in crate::fit) price: &'a (dyn Fn(&Mark) -> f32 + Sync),
 }
 
-impl<P> Terms<P> {
+impl Terms<'_> {
     /// The squared error that a shadow has to remove.
     pub(super) fn price_of_shadow(&self) -> f32 {
         self.per_byte * BYTES
@@ -75,11 +75,7 @@ impl<P> Terms<P> {
 
 impl Things {
     /// The things of a picture on a page.
-    pub(super) fn of(
-        surfaces: &Surfaces<'_>,
-        page: &Page,
-        terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
-    ) -> Self {
+    pub(super) fn of(surfaces: &Surfaces<'_>, page: &Page, terms: &Terms<'_>) -> Self {
         let lit = surfaces.lit();
         let mut things = Self::traced(&lit, &lit, surfaces, page, terms);
         // What casts a shadow lies above what that is seen on. Where tracing thinks otherwise, it is told what is there without.
@@ -112,7 +108,7 @@ impl Things {
         whole: &Image,
         surfaces: &Surfaces<'_>,
         page: &Page,
-        terms: &Terms<impl Fn(&Mark) -> f32 + Sync>,
+        terms: &Terms<'_>,
     ) -> Self {
         let size = [lit.width(), lit.height()];
         let pages = page.behind(lit);
@@ -138,7 +134,7 @@ impl Things {
             is_of_details: false,
         };
         let residuals: Vec<Residual<'_>> = residuals.collect();
-        let marks = trace::trace(&residuals, tracing, Marks::Auto, &terms.price);
+        let marks = trace::trace(&residuals, tracing, Marks::Auto, terms.price);
         let mut things = Self {
             size,
             areas: Vec::new(),
