@@ -67,8 +67,12 @@ impl Scene<'_> {
     fn on_floor(&self, part: &[usize], left: &[Value]) -> Option<Group> {
         let width = self.surfaces.width();
         // Edges of things cover some of the pixels beside them.
-        let mut tops: Vec<Option<usize>> = part.iter().map(|&i| self.things.top[i]).collect();
-        let floor = math::most_common(&mut tops).and_then(|tops| tops[0]);
+        let mut counts = vec![0; self.things.areas.len()];
+        let tops = part.iter().filter_map(|&i| self.things.top[i]);
+        tops.for_each(|top| counts[top] += 1);
+        let floor = (0..counts.len())
+            .rev()
+            .find(|&k| 2 * counts[k] > part.len());
         let around = part.iter().flat_map(|&i| beside(i, width, left.len()));
         let around = around.filter(|&i| {
             self.surfaces

@@ -1,7 +1,5 @@
 //! Which things cast their shadows together, and what these shadows are seen on.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use super::ink;
 use super::shadow::Shadow;
 use super::surfaces::{FLAT, Light, Surfaces};
@@ -56,26 +54,30 @@ impl<'a> Scene<'a> {
     pub(super) fn ground(&self, groups: Vec<Group>, price: f32) -> Vec<Area> {
         let groups = self.explained(groups);
         let left = self.without(&groups);
-        let mut layers: BTreeMap<(usize, bool), Vec<Area>> = BTreeMap::new();
+        let size = self.surfaces.size();
+        let mut shadows: Vec<Vec<Area>> = vec![Vec::new(); self.things.areas.len()];
+        let mut is_below = vec![false; self.things.areas.len()];
         for group in &groups {
             let [all, left] = self.errors(group, &left);
-            if all - left < price * group.shadow.len() as f32 {
-                continue;
-            }
-            // Below the lowest of the things that cast it, and above what it is seen on.
-            let shadows = group.shadow.areas(self.surfaces.size());
-            layers.insert((group.lowest(), false), shadows);
-            let below = self.seen(group).into_iter();
-            for below in below.filter_map(|i| self.things.top[i]) {
-                let thing = Mark::Area(self.things.areas[below].clone());
-                layers.entry((below, true)).or_insert_with(|| {
-                    let rounded = quantized_anywhere(&thing, PRECISION);
-                    let area = rounded.and_then(|mark| mark.as_area().cloned());
-                    area.into_iter().collect()
-                });
+            if all - left >= price * group.shadow.len() as f32 {
+                shadows[group.lowest()].extend(group.shadow.areas(size));
+                let below = self.seen(group).into_iter();
+                let below = below.filter_map(|i| self.things.top[i]);
+                below.for_each(|thing| is_below[thing] = true);
             }
         }
-        layers.into_values().flatten().collect()
+        // Below the lowest of the things that cast it, and above what it is seen on.
+        let mut ground = Vec::new();
+        for ((shadows, is_below), thing) in
+            shadows.into_iter().zip(is_below).zip(&self.things.areas)
+        {
+            ground.extend(shadows);
+            if is_below {
+                let rounded = quantized_anywhere(&Mark::Area(thing.clone()), PRECISION);
+                ground.extend(rounded.and_then(|mark| mark.as_area().cloned()));
+            }
+        }
+        ground
     }
 
     /// The groups of casters whose shadows explain what is soft: all as one, or each its own if that leaves less.
@@ -101,10 +103,11 @@ impl<'a> Scene<'a> {
             let own = self.seen(&groups[k]);
             let others = groups.iter().enumerate().filter(|(i, _)| *i != k);
             let others: Vec<&Group> = others.map(|(_, group)| group).collect();
-            if others
-                .iter()
-                .all(|other| self.seen(other).is_disjoint(&own))
-            {
+            let meets = |other: &&Group| {
+                let mut seen = self.seen(other).into_iter();
+                seen.any(|i| own.binary_search(&i).is_ok())
+            };
+            if !others.iter().any(meets) {
                 continue;
             }
             let left = self.without(others);
@@ -188,8 +191,8 @@ impl<'a> Scene<'a> {
         seen.fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
     }
 
-    /// The pixels that the shadow of a group changes.
-    fn seen(&self, group: &Group) -> BTreeSet<usize> {
+    /// The pixels that the shadow of a group changes, rising.
+    fn seen(&self, group: &Group) -> Vec<usize> {
         let shares = group.shadow.shares(self.surfaces.size()).into_iter();
         let seen = shares.filter(|&(_, share)| share > FLAT).map(|(i, _)| i);
         seen.filter(|&i| self.shows(i, group.lowest()).is_some())

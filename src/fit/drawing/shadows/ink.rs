@@ -1,7 +1,5 @@
 //! The ink of a shadow: the one colour that it mixes surfaces with, by shares.
 
-use std::collections::BTreeMap;
-
 use nalgebra::{Matrix4, Vector4};
 
 use crate::shading::Value;
@@ -32,14 +30,17 @@ fn common(pixels: &[(Value, Value)]) -> Option<Value> {
     let (mean, along, whole) = line(pixels.iter())?;
     let far = vector(farthest(mean, along)?);
     // One line for the pixels on about one colour, as single ones are rounded.
-    let mut surfaces = BTreeMap::<[u8; 4], Vec<&(Value, Value)>>::new();
+    let mut surfaces: Vec<(Value, Vec<&(Value, Value)>)> = Vec::new();
     for pixel in pixels {
-        let key = pixel.1.map(|v| (v * 15.0).round() as u8);
-        surfaces.entry(key).or_default().push(pixel);
+        let about = pixel.1.map(|v| (v * 15.0).round());
+        match surfaces.iter_mut().find(|(own, _)| *own == about) {
+            Some((_, own)) => own.push(pixel),
+            None => surfaces.push((about, vec![pixel])),
+        }
     }
     // Σ w·P·(ink − base) = 0, with P the projection that takes away what is along the line.
     let (mut sum, mut right) = (Matrix4::<f64>::zeros(), Vector4::<f64>::zeros());
-    for pixels in surfaces.into_values() {
+    for (_, pixels) in surfaces {
         if let Some((base, along, weight)) = line(pixels.into_iter()) {
             let along = vector(along);
             let own = (Matrix4::identity() - along * along.transpose()) * f64::from(weight);

@@ -1,10 +1,8 @@
 //! The surfaces that shadows fall on, the soft pixels on them, and the picture in full light.
 
-use std::collections::BTreeMap;
-
 use super::ink::{self, away};
 use crate::image::{Image, beside, flooded};
-use crate::math::Point;
+use crate::math::{self, Point};
 use crate::scene::Shade;
 use crate::shading::{Blocks, NEAR, Value, premultiplied};
 
@@ -189,18 +187,19 @@ impl<'a> Surfaces<'a> {
 
     /// The colours that enough pixels have where nothing changes, the most common first.
     fn colors(&self) -> Vec<Value> {
-        let mut counts = BTreeMap::<[u8; 4], usize>::new();
-        for i in (0..self.len()).filter(|&i| self.seen[i].is_none() && self.is_even(i, LEVEL)) {
-            let level = self.value(i).map(|v| (255.0 * v).round() as u8);
-            *counts.entry(level).or_default() += 1;
+        let even = (0..self.len()).filter(|&i| self.seen[i].is_none() && self.is_even(i, LEVEL));
+        let levels = even.map(|i| self.value(i).map(|v| (255.0 * v).round() as u8));
+        let mut levels: Vec<[u8; 4]> = levels.collect();
+        let mut colors = Vec::new();
+        while let Some(most) = math::most_common(&mut levels) {
+            if (most.len() as f32) < LEAST_SURFACE * self.len() as f32 {
+                break;
+            }
+            let color = most[0];
+            colors.push(color.map(|level| f32::from(level) / 255.0));
+            levels.retain(|own| *own != color);
         }
-        counts.retain(|_, count| *count as f32 >= LEAST_SURFACE * self.len() as f32);
-        let mut counts: Vec<_> = counts.into_iter().collect();
-        counts.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
-        let colors = counts.into_iter().map(|(color, _)| color);
         colors
-            .map(|color| color.map(|level| f32::from(level) / 255.0))
-            .collect()
     }
 
     /// The gradients of large parts without a step that show no surface yet.

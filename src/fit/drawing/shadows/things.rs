@@ -1,7 +1,5 @@
 //! The things of a picture, as they are traced in full light, and which of them cast shadows.
 
-use std::collections::BTreeSet;
-
 use kurbo::Rect;
 
 use super::region::Region;
@@ -232,14 +230,15 @@ impl Things {
         price: f32,
     ) -> Option<Shadow> {
         let (region, mask) = covered(area, 0.0);
-        let own = region.pixels(self.size);
-        let own = own.filter(|(k, _)| mask.values[*k] >= HIDES);
-        let own: BTreeSet<usize> = own.map(|(_, i)| i).collect();
+        let mut is_own = vec![false; left.len()];
+        for (k, i) in region.pixels(self.size) {
+            is_own[i] = mask.values[k] >= HIDES;
+        }
         let known = |i: usize| {
             let (surface, light) = surfaces.at(i)?;
             // What a fit would move is no part of the ground.
             let is_ground = self.may_be_below || self.top[i].is_none();
-            let is_known = light != Light::Rim && is_ground && !own.contains(&i);
+            let is_known = light != Light::Rim && is_ground && !is_own[i];
             is_known.then(|| (left[i], surfaces.base(surface, i)))
         };
         let shadow = Shadow::of(vec![area.clone()], self.size, COARSE, known)?;
