@@ -25,10 +25,10 @@ mod surfaces;
 mod things;
 
 use crate::image::Image;
-use crate::math;
-use crate::scene::{Area, Blurs, Rgb, Shade};
+use crate::render;
+use crate::scene::{Area, Blurs, Rgb, Scene, Shade};
 use crate::shading::Blocks;
-use groups::Scene;
+use groups::Shaded;
 use surfaces::{Base, MIXED, Surfaces};
 pub(in crate::fit) use things::Terms;
 use things::Things;
@@ -70,9 +70,9 @@ fn found(picture: &Image, page: &Page, terms: &Terms<'_>) -> Option<Vec<Area>> {
     // 2. The things in full light, and those that soft pixels surround.
     let things = Things::of(&surfaces, page, terms);
     // 3. Blurs of these that explain soft pixels and pay, with what they are seen on.
-    let (scene, price) = (Scene::new(&surfaces, &things), terms.price_of_shadow());
-    let groups = scene.with_floors(scene.groups(), price);
-    let ground = scene.ground(groups, price).into_iter();
+    let (shaded, price) = (Shaded::new(&surfaces, &things), terms.price_of_shadow());
+    let groups = shaded.with_floors(shaded.groups(), price);
+    let ground = shaded.ground(groups, price).into_iter();
     Some(match terms.blurs {
         Blurs::Filter => ground.collect(),
         Blurs::Steps => ground.flat_map(without_blur).collect(),
@@ -102,25 +102,23 @@ impl Page {
             Some(_) => &[[0.0; 3], [1.0; 3]],
             None => &[[1.0; 3]],
         };
+        let size = [picture.width(), picture.height()];
+        let [width, height] = size.map(|side| side as u32);
+        let empty = Scene::empty(width, height, None);
+        let scene = match self {
+            Self::Clear => empty,
+            Self::Color(color) => Scene {
+                background: Some(*color),
+                ..empty
+            },
+            Self::Shade(shade) => Scene {
+                ground: vec![Area::page(shade.clone(), [width, height])],
+                ..empty
+            },
+        };
         let page = |&matte: &Rgb| {
-            let of = |x: usize, y: usize| match self {
-                Self::Clear => matte,
-                Self::Color(color) => *color,
-                Self::Shade(shade) => {
-                    let at = math::point([x as f32 + 0.5, y as f32 + 0.5]);
-                    let (color, opacity) = shade.at(at);
-                    std::array::from_fn(|c| matte[c] + opacity * (color[c] - matte[c]))
-                }
-            };
-            let (width, height) = (picture.width(), picture.height());
-            let plane = |c: usize| {
-                let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-                places.map(|(x, y)| of(x, y)[c]).collect()
-            };
-            (
-                matte,
-                Image::from_planes(width, height, [0, 1, 2].map(plane)),
-            )
+            let planes = render::ground(&scene, matte);
+            (matte, Image::from_planes(size[0], size[1], planes))
         };
         mattes.iter().map(page).collect()
     }
@@ -139,8 +137,7 @@ fn is_gradient(surfaces: &Surfaces<'_>) -> bool {
     let Some(ink) = ink::of(pixels, MIXED) else {
         return false;
     };
-    let size = [surfaces.width(), surfaces.len() / surfaces.width()];
-    let (blocks, _) = Blocks::of_page(size, GRADIENT_BLOCKS, |pixels| {
+    let (blocks, _) = Blocks::of_page(surfaces.size(), GRADIENT_BLOCKS, |pixels| {
         let share = |&i: &usize| {
             let (share, away) = ink::share(surfaces.value(i), surfaces.base(0, i), ink);
             (surfaces.is_soft(i) && share > 0.0 && away <= MIXED).then_some(share)

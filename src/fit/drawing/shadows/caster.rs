@@ -69,8 +69,8 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// The search on so many blocks along the longer side of a region, if the share of any of them is seen. `share` is that of a pixel of the page, with
-    /// the squared difference that the whole share makes.
+    /// The search on so many blocks along the longer side of a region, if the share of any of them is seen. `share` is that of a pixel
+    /// of the page, with the squared difference that the whole share makes.
     pub(super) fn of(
         (region, mask, reach): (&Region, &Plane, f32),
         (page, blocks): ([usize; 2], usize),

@@ -1,7 +1,6 @@
 //! Shadows that have no thing's shape: a light from above casts a blurred ellipse on the floor below a thing.
 
-use super::groups::{BLOCKS, Group, Scene};
-use super::ink;
+use super::groups::{BLOCKS, Group, Shaded};
 use super::shadow::Shadow;
 use super::surfaces::Light;
 use crate::image::{beside, flooded};
@@ -19,7 +18,7 @@ const COARSE: usize = 40;
 /// The first and the last step of the search for radii, logarithms.
 const STEPS: [f64; 2] = [0.2, 0.02];
 
-impl Scene<'_> {
+impl Shaded<'_> {
     /// The groups, and ellipses that gain `price` each in what they leave.
     pub(super) fn with_floors(&self, mut groups: Vec<Group>, price: f32) -> Vec<Group> {
         let left = self.without(&groups);
@@ -50,17 +49,6 @@ impl Scene<'_> {
             }
         }
         parts
-    }
-
-    /// The squared difference of what is left of a soft pixel from full light.
-    fn lacking(&self, i: usize, left: &[Value]) -> f32 {
-        let soft = self
-            .surfaces
-            .at(i)
-            .filter(|(_, light)| *light == Light::Soft);
-        soft.map_or(0.0, |(surface, _)| {
-            ink::distance2(left[i], self.surfaces.base(surface, i))
-        })
     }
 
     /// The blurred ellipse that these soft pixels show, below the lowest thing that they touch.
@@ -112,7 +100,7 @@ impl Scene<'_> {
             Shadow::of(vec![area], size, blocks, known)
         };
         let unlike = |scale: [f64; 2]| {
-            let [all, left] = shadow(scale, COARSE)?.errors(size, known);
+            let [all, left] = shadow(scale, COARSE)?.errors(known);
             Some(left / all.max(f32::MIN_POSITIVE))
         };
         if unlike([0.0; 2])? > UNLIKE {

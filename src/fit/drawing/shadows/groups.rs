@@ -20,7 +20,7 @@ const LEFT: f32 = 0.03;
 const PRECISION: u8 = 2;
 
 /// The things of a picture, and the surfaces that their shadows are seen on.
-pub(super) struct Scene<'a> {
+pub(super) struct Shaded<'a> {
     pub(super) surfaces: &'a Surfaces<'a>,
     pub(super) things: &'a Things,
     pub(super) values: Vec<Value>,
@@ -40,13 +40,12 @@ impl Group {
     }
 }
 
-impl<'a> Scene<'a> {
+impl<'a> Shaded<'a> {
     pub(super) fn new(surfaces: &'a Surfaces<'a>, things: &'a Things) -> Self {
-        let values = (0..surfaces.len()).map(|i| surfaces.value(i));
         Self {
             surfaces,
             things,
-            values: values.collect(),
+            values: surfaces.values(),
         }
     }
 
@@ -142,13 +141,15 @@ impl<'a> Scene<'a> {
 
     /// The squared error of soft pixels with these values.
     fn error(&self, values: &[Value]) -> f32 {
-        let soft = (0..values.len()).filter_map(|i| match self.surfaces.at(i)? {
-            (surface, Light::Soft) => {
-                Some(ink::distance2(values[i], self.surfaces.base(surface, i)))
-            }
-            _ => None,
-        });
-        soft.sum()
+        (0..values.len()).map(|i| self.lacking(i, values)).sum()
+    }
+
+    /// The squared difference of what is left of a soft pixel from full light; 0 of others.
+    pub(super) fn lacking(&self, i: usize, left: &[Value]) -> f32 {
+        match self.surfaces.at(i) {
+            Some((surface, Light::Soft)) => ink::distance2(left[i], self.surfaces.base(surface, i)),
+            _ => 0.0,
+        }
     }
 
     /// The surface in full light at a pixel that shows how a shadow below a thing falls.
@@ -173,7 +174,7 @@ impl<'a> Scene<'a> {
     pub(super) fn without<'g>(&self, groups: impl IntoIterator<Item = &'g Group>) -> Vec<Value> {
         let mut left = self.values.clone();
         for Group { things, shadow } in groups {
-            for (i, share) in shadow.shares(self.surfaces.size()) {
+            for &(i, share) in shadow.shares() {
                 if self.shows(i, things[0]).is_some() {
                     left[i] = shadow.below(left[i], share);
                 }
@@ -193,8 +194,8 @@ impl<'a> Scene<'a> {
 
     /// The pixels that the shadow of a group changes, rising.
     fn seen(&self, group: &Group) -> Vec<usize> {
-        let shares = group.shadow.shares(self.surfaces.size()).into_iter();
-        let seen = shares.filter(|&(_, share)| share > FLAT).map(|(i, _)| i);
+        let shares = group.shadow.shares().iter();
+        let seen = shares.filter(|(_, share)| *share > FLAT).map(|(i, _)| *i);
         seen.filter(|&i| self.shows(i, group.lowest()).is_some())
             .collect()
     }

@@ -30,6 +30,8 @@ pub(super) struct Shadow {
     mask: Plane,
     ink: Value,
     casts: Vec<Cast>,
+    /// The pixels of the page that it may change, each with the share of the ink there.
+    shares: Vec<(usize, f32)>,
 }
 
 impl Shadow {
@@ -65,12 +67,14 @@ impl Shadow {
             }
             casts.push(cast);
         }
+        let shares = shares(&region, &mask, &casts, size);
         (!casts.is_empty()).then_some(Self {
             casters,
             region,
             mask,
             ink,
             casts,
+            shares,
         })
     }
 
@@ -80,27 +84,14 @@ impl Shadow {
     }
 
     /// The pixels of the page that it may change, each with the share of the ink there.
-    pub(super) fn shares(&self, size: [usize; 2]) -> Vec<(usize, f32)> {
-        let mut through = vec![1.0; self.mask.values.len()];
-        for cast in &self.casts {
-            let soft = blurred(self.mask.clone(), cast.blur);
-            for (k, through) in through.iter_mut().enumerate() {
-                *through *= 1.0 - cast.opacity * caster::at(&soft, k, cast.shift);
-            }
-        }
-        let pixels = self.region.pixels(size);
-        pixels.map(|(k, i)| (i, 1.0 - through[k])).collect()
+    pub(super) fn shares(&self) -> &[(usize, f32)] {
+        &self.shares
     }
 
     /// The squared error of what `known` tells of the pixels where it is seen: from full light, and without the shadow.
-    pub(super) fn errors(
-        &self,
-        size: [usize; 2],
-        known: impl Fn(usize) -> Option<(Value, Value)>,
-    ) -> [f32; 2] {
-        let seen = self.shares(size).into_iter();
-        let seen = seen.filter(|&(_, share)| share > FLAT);
-        let errors = seen.filter_map(|(i, share)| {
+    pub(super) fn errors(&self, known: impl Fn(usize) -> Option<(Value, Value)>) -> [f32; 2] {
+        let seen = self.shares.iter().filter(|(_, share)| *share > FLAT);
+        let errors = seen.filter_map(|&(i, share)| {
             let (value, base) = known(i)?;
             let values = [value, self.below(value, share)];
             Some(values.map(|value| ink::distance2(value, base)))
@@ -147,6 +138,19 @@ impl Shadow {
         };
         parts.into_iter().filter_map(area).collect()
     }
+}
+
+/// The shares of the ink of blurs at the pixels of a page.
+fn shares(region: &Region, mask: &Plane, casts: &[Cast], page: [usize; 2]) -> Vec<(usize, f32)> {
+    let mut through = vec![1.0; mask.values.len()];
+    for cast in casts {
+        let soft = blurred(mask.clone(), cast.blur);
+        for (k, through) in through.iter_mut().enumerate() {
+            *through *= 1.0 - cast.opacity * caster::at(&soft, k, cast.shift);
+        }
+    }
+    let pixels = region.pixels(page);
+    pixels.map(|(k, i)| (i, 1.0 - through[k])).collect()
 }
 
 /// True if the border of a page of this size cuts off nothing of an area.

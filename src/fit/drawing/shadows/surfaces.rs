@@ -140,6 +140,11 @@ impl<'a> Surfaces<'a> {
         [r, g, b, alpha]
     }
 
+    /// The values of all pixels.
+    pub(super) fn values(&self) -> Vec<Value> {
+        (0..self.len()).map(|i| self.value(i)).collect()
+    }
+
     /// True if a pixel is soft.
     pub(super) fn is_soft(&self, i: usize) -> bool {
         self.seen[i].is_some_and(|(_, light)| light != Light::Full)
@@ -154,7 +159,7 @@ impl<'a> Surfaces<'a> {
 
     /// True for a pixel whose neighbours on opposite sides have it about in their middle, and that is on no sharp edge.
     fn is_smooth(&self, i: usize) -> bool {
-        let (w, height) = (self.width(), self.len() / self.width());
+        let [w, height] = self.size();
         let own = self.value(i);
         [(1, i % w, w), (w, i / w, height)]
             .into_iter()
@@ -176,7 +181,7 @@ impl<'a> Surfaces<'a> {
 
     /// True for a pixel that those [`EVEN`] px away on all sides are at most this far from.
     fn is_even(&self, i: usize, most: f32) -> bool {
-        let (width, height) = (self.width(), self.len() / self.width());
+        let [width, height] = self.size();
         let [x, y] = [i % width, i / width];
         let row = [x.checked_sub(EVEN), Some(x + EVEN).filter(|&x| x < width)];
         let column = [y.checked_sub(EVEN), Some(y + EVEN).filter(|&y| y < height)];
@@ -220,8 +225,7 @@ impl<'a> Surfaces<'a> {
             }
             let mut is_part = vec![false; self.len()];
             part.iter().for_each(|&i| is_part[i] = true);
-            let size = [self.width(), self.len() / self.width()];
-            let (blocks, _) = Blocks::of_page(size, BLOCKS, |pixels| {
+            let (blocks, _) = Blocks::of_page(self.size(), BLOCKS, |pixels| {
                 let mut sum = [0.0; 4];
                 for &i in pixels {
                     sum = std::array::from_fn(|c| sum[c] + self.value(i)[c]);
@@ -334,7 +338,7 @@ impl<'a> Surfaces<'a> {
         if self.seen[i].is_some() {
             return None;
         }
-        let (width, height) = (self.width() as i64, (self.len() / self.width()) as i64);
+        let [width, height] = self.size().map(|side| side as i64);
         let [x, y] = [i as i64 % width, i as i64 / width];
         let at = |[dx, dy]: [i64; 2], steps: i64| {
             let [x, y] = [x + steps * dx, y + steps * dy];
@@ -401,7 +405,7 @@ impl<'a> Surfaces<'a> {
             }
         };
         let planes = [0, 1, 2].map(|c| values.iter().map(color(c)).collect());
-        let (width, height) = (self.width(), self.len() / self.width());
+        let [width, height] = self.size();
         let lit = Image::from_planes(width, height, planes);
         match self.picture.alpha() {
             Some(_) => lit

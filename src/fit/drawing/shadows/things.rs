@@ -193,7 +193,7 @@ impl Things {
         let mut shares: Vec<(usize, f32)> = shares.collect();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         // Where shadows lie on each other, those that are found tell what is left for others.
-        let mut left: Vec<Value> = (0..surfaces.len()).map(|i| surfaces.value(i)).collect();
+        let mut left = surfaces.values();
         let mut is_found = vec![false; shares.len()];
         for _ in 0..MOST_LOOKS {
             let rest = (0..shares.len()).filter(|&n| !is_found[n]);
@@ -209,7 +209,7 @@ impl Things {
             }
             for (n, shadow) in found {
                 is_found[n] = true;
-                for (i, share) in shadow.shares(self.size) {
+                for &(i, share) in shadow.shares() {
                     left[i] = shadow.below(left[i], share);
                 }
             }
@@ -242,7 +242,7 @@ impl Things {
             is_known.then(|| (left[i], surfaces.base(surface, i)))
         };
         let shadow = Shadow::of(vec![area.clone()], self.size, COARSE, known)?;
-        let [all, left] = shadow.errors(self.size, known);
+        let [all, left] = shadow.errors(known);
         (left <= UNLIKE * all && all - left >= price).then_some(shadow)
     }
 
