@@ -318,6 +318,8 @@ impl<'a> Choice<'a> {
                 places,
                 is_closed: stroke.path.is_closed(),
                 radius: stroke.radius,
+                radii: Vec::new(),
+                crossings: Vec::new(),
             }
         };
         let middles: Vec<Middle> = strokes.iter().map(middle).collect();

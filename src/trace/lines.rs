@@ -66,14 +66,26 @@ impl Line {
 
 /// The lines of a graph.
 pub(super) fn lines(mut graph: Graph) -> Vec<Line> {
-    // Each makes more of the other: without a spur, a branching point is a place on an edge.
-    while prune(&mut graph) || contract(&mut graph) {}
+    graph.clean();
     let mut lines = chain(&graph);
     lines.iter_mut().for_each(|line| line.trim());
     lines
 }
 
 impl Graph {
+    /// Takes away what thinning adds where lines end and cross.
+    pub(super) fn clean(&mut self) {
+        // Each makes more of the other: without a spur, a branching point is a place on an edge.
+        while prune(self) || contract(self) {}
+    }
+
+    /// The nodes at which several edges meet.
+    pub(super) fn crossings(&self) -> impl Iterator<Item = Spot> + '_ {
+        let degrees = self.degrees();
+        let nodes = self.nodes.iter().zip(degrees);
+        nodes.filter(|(_, degree)| *degree > 2).map(|(node, _)| *node)
+    }
+
     fn degrees(&self) -> Vec<usize> {
         let mut degrees = vec![0; self.nodes.len()];
         for node in self.edges.iter().filter_map(|edge| edge.nodes).flatten() {
@@ -161,7 +173,7 @@ fn contract(graph: &mut Graph) -> bool {
 type End = (usize, bool);
 
 /// The lines along edges that continue each other.
-fn chain(graph: &Graph) -> Vec<Line> {
+pub(super) fn chain(graph: &Graph) -> Vec<Line> {
     // For each end of an edge, the end that it goes on at, and the cosine of the turn between.
     let runs: Vec<Vec<Spot>> = graph.edges.iter().map(|edge| graph.run(edge)).collect();
     let mut next: Vec<[Option<(End, f32)>; 2]> = vec![[None; 2]; runs.len()];

@@ -30,6 +30,7 @@ mod even;
 mod fill;
 mod gain;
 mod halves;
+mod ink;
 mod lines;
 mod parts;
 mod shape;

@@ -429,6 +429,7 @@ mod tests {
             at: Point::new(x, y),
             segment,
             is_smooth: false,
+            radius: 0.0,
         };
         let controls = [Point::new(13.0, 22.3), Point::new(4.1, 20.2)];
         let knots = vec![
@@ -441,39 +442,37 @@ mod tests {
             turn: 1.0,
         };
         // An arc that two lines touch, with round ends; and a circle with a pen.
-        let hook = Line {
-            knots: vec![
-                Knot {
-                    is_smooth: false,
-                    ..knot(8.3, 21.2, Segment::Line)
-                },
-                Knot {
-                    is_smooth: true,
-                    ..knot(8.3, 12.4, Segment::Arc(1.0))
-                },
-                Knot {
-                    is_smooth: true,
-                    ..knot(21.9, 12.4, Segment::Line)
-                },
-                knot(21.9, 19.7, Segment::Line),
-            ],
-            is_closed: false,
-            radius: 2.17,
-            cap: Cap::Round,
+        let hook = [
+            knot(8.3, 21.2, Segment::Line),
+            Knot {
+                is_smooth: true,
+                ..knot(8.3, 12.4, Segment::Arc(1.0))
+            },
+            Knot {
+                is_smooth: true,
+                ..knot(21.9, 12.4, Segment::Line)
+            },
+            knot(21.9, 19.7, Segment::Line),
+        ];
+        let hook = Line::even(&hook, false, 2.17, Cap::Round);
+        // One that swells, and tapers to nearly nothing.
+        let mut swelling = Line {
+            is_even: false,
+            ..hook.clone()
         };
-        let loop_ = Line {
-            knots: vec![
-                knot(9.1, 13.2, Segment::Arc(1.0)),
-                knot(22.73, 13.6, Segment::Arc(1.0)),
-            ],
-            is_closed: true,
-            radius: 1.9,
-            cap: Cap::Round,
-        };
+        for (knot, radius) in swelling.knots.iter_mut().zip([0.4, 1.3, 3.2, 0.1]) {
+            knot.radius = radius;
+        }
+        let loop_ = [
+            knot(9.1, 13.2, Segment::Arc(1.0)),
+            knot(22.73, 13.6, Segment::Arc(1.0)),
+        ];
+        let loop_ = Line::even(&loop_, true, 1.9, Cap::Round);
         vec![
             Ring::Knots(knots),
             circle,
             Ring::Line(hook),
+            Ring::Line(swelling),
             Ring::Line(loop_),
         ]
     }

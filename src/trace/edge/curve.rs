@@ -24,7 +24,7 @@ pub(in crate::trace) enum Ring {
     },
     /// Vertices with segments.
     Knots(Vec<Knot>),
-    /// What a line of one width covers.
+    /// What a line covers.
     Line(Line),
 }
 
@@ -37,7 +37,7 @@ impl Ring {
                 let own: usize = knots.iter().map(|knot| knot.segment.unknowns()).sum();
                 2 * knots.len() + own
             }
-            Self::Line(line) => line.radius_index() + 1,
+            Self::Line(line) => line.radius_index() + line.radii(),
         }
     }
 
@@ -48,7 +48,8 @@ impl Ring {
             Self::Knots(knots) => values_of(knots, knots.len()),
             Self::Line(line) => {
                 let mut values = values_of(&line.knots, line.segments());
-                values.push(line.radius);
+                let radii = line.knots.iter().take(line.radii());
+                values.extend(radii.map(|knot| knot.radius));
                 values
             }
         }
@@ -62,7 +63,11 @@ impl Ring {
             Self::Knots(knots) => set_values(knots, values),
             Self::Line(line) => {
                 set_values(&mut line.knots, values);
-                line.radius = values[values.len() - 1].max(LEAST_RADIUS);
+                let radii = &values[line.radius_index()..];
+                for (i, knot) in line.knots.iter_mut().enumerate() {
+                    // One of all, or one of each.
+                    knot.radius = radii[i.min(radii.len() - 1)].max(LEAST_RADIUS);
+                }
             }
         }
         ring
@@ -244,7 +249,7 @@ impl Ring {
     }
 }
 
-/// Least radius of a line, px.
+/// Least radius of a line, px: what it covers of a pixel is proportional to it, so that it goes on down to there.
 const LEAST_RADIUS: f64 = 0.1;
 
 /// The numbers of a shape. Round corners have a radius, but not sharp ones and those of an infinite radius, which are as round as the
@@ -299,6 +304,7 @@ fn knots(shape: &Shape, turn: f64) -> Vec<Knot> {
         at: Point::new(x, y),
         segment,
         is_smooth: false,
+        radius: 0.0,
     };
     let half = Segment::Arc(1.0);
     let quarter = Segment::Arc(math::tan(0.25 * FRAC_PI_2));
@@ -325,6 +331,7 @@ fn knots(shape: &Shape, turn: f64) -> Vec<Knot> {
                     at: at(u, v),
                     segment: Segment::Cubic(controls),
                     is_smooth: true,
+                    radius: 0.0,
                 }
             };
             [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]

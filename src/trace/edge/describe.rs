@@ -20,6 +20,8 @@ pub(super) struct Sample {
     pub(super) sigma: f64,
     /// The gap that stands between the samples beside it.
     pub(super) gap: Option<usize>,
+    /// Half the width of a line there, px, as exact as the place, if it is described, too.
+    pub(super) half: Option<f64>,
 }
 
 impl Sample {
@@ -74,6 +76,47 @@ struct Fitted {
     chi2: f64,
     /// The centre of an arc.
     center: Point,
+}
+
+/// Half the width of a line along a segment: at both of its ends, and χ² of the samples'.
+#[derive(Debug, Clone, Copy)]
+struct Halves {
+    ends: [f64; 2],
+    chi2: f64,
+}
+
+impl Halves {
+    /// The widths along the samples between two, which are linear in the way along these; `None` if samples have none.
+    fn along(samples: &[Sample]) -> Option<Self> {
+        let mut equations = Normal::<1>::of(2);
+        let (mut far, mut last) = (0.0, samples.first()?.at);
+        let mut found: Vec<(f64, f64, &Sample)> = Vec::new();
+        for sample in samples.iter().filter(|sample| sample.gap.is_none()) {
+            far += (sample.at - last).hypot();
+            last = sample.at;
+            found.extend(sample.half.map(|half| (far, half, sample)));
+        }
+        if found.is_empty() {
+            return None;
+        }
+        for (at, half, sample) in &found {
+            let share = at / far.max(1e-9);
+            let terms = [(0, 1.0 - share), (1, share)];
+            equations.add(&terms, [*half], sample.weight());
+        }
+        // A few samples at one place tell one width.
+        equations.add(&[(0, 1.0), (1, -1.0)], [0.0], 1e-3);
+        let solution = equations.solve()?;
+        let ends = [solution[0][0], solution[1][0]];
+        let squares = found.iter().map(|(at, half, sample)| {
+            let share = at / far.max(1e-9);
+            sample.square(ends[0] + share * (ends[1] - ends[0]) - half)
+        });
+        Some(Self {
+            ends,
+            chi2: squares.sum(),
+        })
+    }
 }
 
 /// The ring around a closed contour.
@@ -138,6 +181,7 @@ pub(super) fn line(samples: &[Sample], is_closed: bool) -> Option<Vec<Knot>> {
         at: samples.first()?.at.midpoint(samples.last()?.at),
         sigma: f64::INFINITY,
         gap: Some(NOTHING),
+        half: None,
     };
     let samples = [nothing]
         .into_iter()
@@ -160,6 +204,7 @@ pub(super) fn corner(at: Point) -> Knot {
         at,
         segment: Segment::Line,
         is_smooth: false,
+        radius: 0.0,
     }
 }
 
@@ -177,6 +222,7 @@ struct Span {
     from: usize,
     to: usize,
     fitted: Fitted,
+    halves: Option<Halves>,
     own: f64,
     /// How far it may go on beneath what hides it, at its start and at its end, px.
     reach: [f64; 2],
@@ -215,12 +261,15 @@ fn around(
             let (a, b) = (places[from], places[to]);
             let before = spans.len();
             let mut least = f64::INFINITY;
+            let halves = Halves::along(&open[a..=b]);
+            // Their number at the joint.
+            let of_halves = halves.map_or(0.0, |halves| 0.5 * halves.chi2 + PRICE);
             let fits = fits
                 .entry([(first + a) % count, (first + b) % count])
                 .or_default();
             for (kind, numbers) in NUMBERS.into_iter().enumerate() {
                 // More numbers cannot pay.
-                if numbers * PRICE >= least {
+                if numbers * PRICE + of_halves >= least {
                     break;
                 }
                 if fits.len() <= kind {
@@ -232,13 +281,14 @@ fn around(
                 }
                 let Some(fitted) = fits[kind] else { continue };
                 let is_next = kind == 0 && to == from + 1;
-                if 0.5 * fitted.chi2 > HOPELESS * PRICE + (b - a) as f64 && !is_next {
+                let chi2 = 0.5 * fitted.chi2 + of_halves;
+                if chi2 > HOPELESS * PRICE + (b - a) as f64 && !is_next {
                     continue;
                 }
                 if !contour.spans_gaps(&open[a..=b], &fitted) {
                     continue;
                 }
-                let own = 0.5 * fitted.chi2 + numbers * PRICE + JOINT;
+                let own = chi2 + numbers * PRICE + JOINT;
                 least = least.min(own - JOINT);
                 let (best, first) = if from == 0 {
                     (own, spans.len())
@@ -253,6 +303,7 @@ fn around(
                     from,
                     to,
                     fitted,
+                    halves,
                     own,
                     reach,
                     best,
@@ -283,12 +334,17 @@ fn around(
         let may_be_smooth = [a, b]
             .iter()
             .all(|s| s.fitted.shape != Segment::Line || length(s) >= 4);
-        joint(
+        let mut joint = joint(
             [a.fitted.ends[1], b.fitted.ends[0]],
             [length(a), length(b)],
             sample.sigma,
             may_be_smooth,
-        )
+        );
+        if let (Some(a), Some(b)) = (a.halves, b.halves) {
+            let step = (a.ends[1] - b.ends[0]) / (2.0 * sample.sigma);
+            joint.cost += 0.5 * (step * step).min(1e6);
+        }
+        joint
     };
     for i in 0..spans.len() {
         if spans[i].from == 0 {
@@ -339,8 +395,22 @@ fn around(
             knots.push(corner(joint.ends[0]));
         }
         knots.extend(joint.between.iter().copied().map(corner));
+        // The mean of both segments; an end has one.
+        let before = &spans[chain[(k + chain.len() - 1) % chain.len()]];
+        let radius = match [before.halves, spans[span].halves] {
+            [Some(a), Some(b)] if joint.ends[0] == joint.ends[1] => {
+                0.5 * (a.ends[1] + b.ends[0])
+            }
+            [_, halves] => halves.map_or(0.0, |halves| halves.ends[0]),
+        };
+        if joint.ends[0] != joint.ends[1]
+            && let (Some(halves), Some(end)) = (before.halves, knots.last_mut())
+        {
+            end.radius = halves.ends[1];
+        }
         knots.push(Knot {
             at,
+            radius,
             segment: match shape {
                 Segment::Cubic([a, b]) => {
                     Segment::Cubic([a + (at - ends[0].at), b + (to - ends[1].at)])
@@ -619,6 +689,7 @@ fn simplified(places: &[Point], is_closed: bool) -> Vec<Point> {
             at,
             sigma: TOLERANCE,
             gap: None,
+            half: None,
         })
         .collect();
     if places.len() < 3 {
@@ -959,9 +1030,18 @@ fn polygon(samples: &[Sample], factor: f64) -> Vec<usize> {
     while let Some((from, to)) = stack.pop() {
         let [p, q] = [from, to].map(|i| samples[i % count].at);
         let way = (q - p) / (q - p).hypot().max(1e-12);
+        let halves = [from, to].map(|i| samples[i % count].half);
         let away = |i: usize| {
             let sample = &samples[i % count];
-            way.cross(sample.at - p).abs() / sample.sigma
+            let beside = way.cross(sample.at - p).abs();
+            let wider = match (halves, sample.half) {
+                ([Some(a), Some(b)], Some(half)) => {
+                    let share = (i - from) as f64 / (to - from) as f64;
+                    (a + share * (b - a) - half).abs()
+                }
+                _ => 0.0,
+            };
+            beside.max(wider) / sample.sigma
         };
         let far = (from + 1..to).max_by(|a, b| away(*a).total_cmp(&away(*b)));
         if let Some(i) = far.filter(|i| away(*i) > factor) {
@@ -1012,6 +1092,7 @@ pub(super) mod tests {
                     at,
                     sigma,
                     gap: None,
+                    half: None,
                 });
                 left += 1.0;
             }
@@ -1034,6 +1115,7 @@ pub(super) mod tests {
             at: Point::new(x, y),
             segment,
             is_smooth,
+            radius: 0.0,
         }
     }
 

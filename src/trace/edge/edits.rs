@@ -188,6 +188,7 @@ pub(super) fn longer(knots: &[Knot], i: usize) -> Vec<Edit> {
                 at: middle,
                 segment: halves[1],
                 is_smooth: true,
+                radius: 0.5 * (knots[i].radius + knots[(i + 1) % count].radius),
             },
         );
         edits.push(Edit {
@@ -236,6 +237,29 @@ pub(super) fn longer(knots: &[Knot], i: usize) -> Vec<Edit> {
         }
     }
     edits
+}
+
+/// Segment `i` of a line as its two halves, so that its width may bend in the middle.
+pub(super) fn halved(knots: &[Knot], i: usize) -> Option<Edit> {
+    let next = (i + 1) % knots.len();
+    let [from, to] = [knots[i].at, knots[next].at];
+    // Other kinds of segments come apart by [`longer`].
+    let is_straight = matches!(knots[i].segment, Segment::Line | Segment::Along(_));
+    is_straight.then(|| {
+        let mut halves = knots.to_vec();
+        halves[i].segment = Segment::Line;
+        let middle = Knot {
+            at: from.midpoint(to),
+            segment: Segment::Line,
+            is_smooth: true,
+            radius: 0.5 * (knots[i].radius + knots[next].radius),
+        };
+        halves.insert(i + 1, middle);
+        Edit {
+            knots: halves,
+            changed: vec![i, i + 1],
+        }
+    })
 }
 
 /// Edits at the start of segment `i` that take numbers away.
@@ -337,11 +361,13 @@ fn off(segment: &Segment, [from, to]: [Point; 2], places: &[Point]) -> f64 {
             at: from,
             segment: *segment,
             is_smooth: false,
+            radius: 0.0,
         },
         Knot {
             at: to,
             segment: Segment::Line,
             is_smooth: false,
+            radius: 0.0,
         },
     ]);
     let curve: Vec<Point> = ring
@@ -459,10 +485,12 @@ fn fillet(knots: &[Knot], i: usize, depth: f64) -> Option<Edit> {
     let [from, to] = [u, v].map(|way| knots[i].at + depth / way.hypot() * way);
     let turn = Ring::Knots(knots.to_vec()).angle(i);
     let mut knots = knots.to_vec();
+    let radius = knots[i].radius;
     knots[i] = Knot {
         at: from,
         segment: Segment::Arc(math::tan(0.25 * turn)),
         is_smooth: true,
+        radius,
     };
     knots.insert(
         i + 1,
@@ -470,6 +498,7 @@ fn fillet(knots: &[Knot], i: usize, depth: f64) -> Option<Edit> {
             at: to,
             segment: Segment::Line,
             is_smooth: true,
+            radius,
         },
     );
     Some(Edit {

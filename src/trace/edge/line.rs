@@ -1,21 +1,21 @@
-//! Lines of one width: their outlines as functions of the vertices of their middle and of their radius.
+//! Lines of one width or of a varying one: their outlines as functions of the vertices of their middle and of the radii there.
 
 use std::f64::consts::PI;
 
 use super::segment::{
-    Knot, NEARLY, Segment, Vertex, directions, own_unknowns, path_of, polyline, turned,
+    Knot, NEARLY, Radius, Segment, Vertex, directions, own_unknowns, path_of, polyline, turned,
 };
 use crate::math::{self, Point, Vec2};
 use crate::scene::{Cap, Path, Shape};
 
-/// A line of one width.
+/// A line. Its width runs linearly with the parameter of each segment, from vertex to vertex.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::trace) struct Line {
     /// The vertices of its middle; behind the last one of an open line is nothing.
     pub(super) knots: Vec<Knot>,
     pub(super) is_closed: bool,
-    /// Half its width, px.
-    pub(super) radius: f64,
+    /// True if all vertices have one radius, which is one number.
+    pub(super) is_even: bool,
     /// Round ends and joins, or square ends and mitred corners.
     pub(super) cap: Cap,
 }
@@ -32,6 +32,16 @@ const SHARPEST: f64 = 0.125;
 const STRAIGHT: f64 = 1e-3;
 
 impl Line {
+    /// A line of one width.
+    pub(super) fn even(knots: &[Knot], is_closed: bool, radius: f64, cap: Cap) -> Self {
+        Self {
+            knots: knots.iter().map(|knot| Knot { radius, ..*knot }).collect(),
+            is_closed,
+            is_even: true,
+            cap,
+        }
+    }
+
     /// Its middle.
     pub(in crate::trace) fn path(&self) -> Path {
         self.circle()
@@ -46,17 +56,42 @@ impl Line {
         is_one.then(|| Shape::circle(a.at.midpoint(b.at), 0.5 * (b.at - a.at).hypot()))
     }
 
-    /// The degrees of freedom of its middle, and its width.
+    /// The degrees of freedom of its middle, and of its width.
     pub(super) fn freedom(&self) -> usize {
-        match self.circle() {
+        match self.circle().filter(|_| self.is_even) {
             Some(_) => 4,
-            None => self.knots.iter().map(Knot::freedom).sum::<usize>() + 1,
+            None => self.knots.iter().map(Knot::freedom).sum::<usize>() + self.radii(),
         }
     }
 
-    /// Half its width, px.
+    /// The number of its radii.
+    pub(super) fn radii(&self) -> usize {
+        match self.is_even {
+            true => 1,
+            false => self.knots.len(),
+        }
+    }
+
+    /// Half its width where it is widest, px.
     pub(in crate::trace) fn radius(&self) -> f64 {
-        self.radius
+        self.knots
+            .iter()
+            .fold(0.0, |most, knot| knot.radius.max(most))
+    }
+
+    /// Half its width at each vertex, px, unless it has one width.
+    pub(in crate::trace) fn varying(&self) -> Option<Vec<f64>> {
+        (!self.is_even).then(|| self.knots.iter().map(|knot| knot.radius).collect())
+    }
+
+    /// The line so much wider on each side, px; at least a hair wide.
+    pub(super) fn widened(&self, by: f64) -> Self {
+        const HAIR: f64 = 0.01;
+        let mut line = self.clone();
+        for knot in &mut line.knots {
+            knot.radius = (knot.radius + by).max(HAIR);
+        }
+        line
     }
 
     /// Its ends.
@@ -91,7 +126,7 @@ impl Line {
         for first in [self.clone(), self.reversed()] {
             for second in [other.clone(), other.reversed()] {
                 let (a, b) = (first.knots.len(), &second.knots);
-                let most = REACH * self.radius.max(other.radius);
+                let most = REACH * self.radius().max(other.radius());
                 let Some(meeting) = meeting(&first.knots, b, most) else {
                     continue;
                 };
@@ -102,6 +137,7 @@ impl Line {
                 knots.extend(rest);
                 found.push(Self {
                     knots,
+                    is_even: first.is_even && second.is_even,
                     ..first.clone()
                 });
             }
@@ -116,7 +152,7 @@ impl Line {
             return None;
         }
         let mut knots = self.knots.clone();
-        knots[0].at = meeting(&knots, &knots, REACH * self.radius)?;
+        knots[0].at = meeting(&knots, &knots, REACH * self.radius())?;
         knots.truncate(count - 1);
         Some(Self {
             knots,
@@ -143,7 +179,7 @@ impl Line {
         self.knots.len() - usize::from(!self.is_closed)
     }
 
-    /// The index of the radius among the unknowns: the last one.
+    /// The index of the first radius among the unknowns, which come last.
     pub(super) fn radius_index(&self) -> usize {
         let own: usize = self
             .knots
@@ -161,23 +197,24 @@ impl Line {
     pub(super) fn outline(&self) -> Vec<Vertex> {
         let owns = own_unknowns(&self.knots).take(self.segments());
         let segments = owns.enumerate().map(|(i, own)| self.middle(i, own));
-        let segments: Vec<(Vec<Vertex>, Vec<Vec2>)> = segments.collect();
-        let radius = (self.radius, self.radius_index());
+        let segments: Vec<Middle> = segments.collect();
         let mut outline = Vec::new();
         // 1. The side to the left, seen with y pointing down; 2. the end; 3. the other side, backwards; 4. the start.
         for side in [-1.0, 1.0] {
             let mut places: Vec<Vertex> = Vec::new();
-            for (i, (middle, ways)) in segments.iter().enumerate() {
+            for (i, middle) in segments.iter().enumerate() {
                 let before = match i {
                     0 => segments.last().filter(|_| self.is_closed),
                     _ => Some(&segments[i - 1]),
                 };
-                if let Some((_, before)) = before {
-                    let ways = [before[before.len() - 1], ways[0]];
-                    places.extend(self.join(&middle[0], ways, side, radius));
+                if let Some(before) = before {
+                    let ways = [before.ways[before.ways.len() - 1], middle.ways[0]];
+                    places.extend(self.join(&middle.vertices[0], ways, side, &middle.radii[0]));
                 }
-                let sides = middle.iter().zip(ways);
-                places.extend(sides.map(|(at, way)| at.moved(side * normal(*way), radius)));
+                let sides = middle.vertices.iter().zip(&middle.ways).zip(&middle.radii);
+                places.extend(
+                    sides.map(|((at, way), radius)| at.moved(side * normal(*way), radius)),
+                );
             }
             if self.is_closed {
                 places.extend(places.first().copied());
@@ -188,18 +225,22 @@ impl Line {
             outline.extend(places);
             if !self.is_closed {
                 let k = if side < 0.0 { segments.len() - 1 } else { 0 };
-                let (middle, ways) = &segments[k];
-                let at = if side < 0.0 { middle.len() - 1 } else { 0 };
+                let middle = &segments[k];
+                let at = if side < 0.0 {
+                    middle.vertices.len() - 1
+                } else {
+                    0
+                };
                 // Out of the line there.
-                let way = -side * ways[at];
-                outline.extend(self.end(&middle[at], way, radius));
+                let way = -side * middle.ways[at];
+                outline.extend(self.end(&middle.vertices[at], way, &middle.radii[at]));
             }
         }
         outline
     }
 
-    /// The polyline of a segment's middle, whose unknowns besides the vertices begin at `own`, and its directions.
-    fn middle(&self, i: usize, own: usize) -> (Vec<Vertex>, Vec<Vec2>) {
+    /// The middle of a segment, whose unknowns besides the vertices begin at `own`.
+    fn middle(&self, i: usize, own: usize) -> Middle {
         let vertices = polyline(&self.knots, i, own);
         let to = self.knots[(i + 1) % self.knots.len()].at;
         let [start, end] = directions(&self.knots[i], to).map(unit);
@@ -210,11 +251,29 @@ impl Line {
             k => unit(vertices[k + 1].at - vertices[k - 1].at),
         };
         let ways = (0..=last).map(way).collect();
-        (vertices, ways)
+        // Vertices are at even steps of the parameter.
+        let next = (i + 1) % self.knots.len();
+        let first = self.radius_index();
+        let radius = |k: usize| {
+            let share = k as f64 / last as f64;
+            let [a, b] = [i, next].map(|i| self.knots[i].radius);
+            Radius {
+                value: a + share * (b - a),
+                slopes: match self.is_even {
+                    true => [(first, 1.0), (first, 0.0)],
+                    false => [(first + i, 1.0 - share), (first + next, share)],
+                },
+            }
+        };
+        Middle {
+            radii: (0..=last).map(radius).collect(),
+            vertices,
+            ways,
+        }
     }
 
     /// What joins two segments on one side, between their ends there.
-    fn join(&self, at: &Vertex, [a, b]: [Vec2; 2], side: f64, radius: (f64, usize)) -> Vec<Vertex> {
+    fn join(&self, at: &Vertex, [a, b]: [Vec2; 2], side: f64, radius: &Radius) -> Vec<Vertex> {
         let angle = 2.0 * math::atan(a.cross(b) / (1.0 + a.dot(b)).max(1e-9));
         if angle.abs() < STRAIGHT {
             return Vec::new();
@@ -231,12 +290,19 @@ impl Line {
     }
 
     /// The end of the line in a direction, from its left to its right.
-    fn end(&self, at: &Vertex, way: Vec2, radius: (f64, usize)) -> Vec<Vertex> {
+    fn end(&self, at: &Vertex, way: Vec2, radius: &Radius) -> Vec<Vertex> {
         match self.cap {
             Cap::Round => fan(at, -normal(way), PI, radius),
             Cap::Butt => Vec::new(),
         }
     }
+}
+
+/// The middle of a segment as a polyline: its vertices, the directions there, and half the widths.
+struct Middle {
+    vertices: Vec<Vertex>,
+    ways: Vec<Vec2>,
+    radii: Vec<Radius>,
 }
 
 /// Where a line that ends and one that starts meet, if the end and the start are near each other.
@@ -259,8 +325,8 @@ fn meeting(first: &[Knot], second: &[Knot], most: f64) -> Option<Point> {
 }
 
 /// Vertices of the circle around a place, from one direction on, without both ends.
-fn fan(at: &Vertex, from: Vec2, angle: f64, radius: (f64, usize)) -> Vec<Vertex> {
-    let step = (8.0 * TOLERANCE / radius.0.max(TOLERANCE)).sqrt();
+fn fan(at: &Vertex, from: Vec2, angle: f64, radius: &Radius) -> Vec<Vertex> {
+    let step = (8.0 * TOLERANCE / radius.value.max(TOLERANCE)).sqrt();
     let count = (angle.abs() / step).ceil().max(2.0) as usize;
     let place = |k: usize| {
         let (sin, cos) = math::sin_cos(angle * k as f64 / count as f64);
@@ -297,12 +363,7 @@ mod tests {
         // A sharp corner to each side.
         for corner in [[50.0, 20.3], [12.1, 14.2]] {
             let places = [[10.2, 40.7], corner, [15.4, 12.9]].map(|[x, y]| Point::new(x, y));
-            let line = Line {
-                knots: places.map(describe::corner).to_vec(),
-                is_closed: false,
-                radius: 4.2,
-                cap: Cap::Round,
-            };
+            let line = Line::even(&places.map(describe::corner), false, 4.2, Cap::Round);
             let ring = Ring::Line(line);
             let band = Band::around(&ring, page);
             let shares = Coverage::of(&ring, &band).shares();

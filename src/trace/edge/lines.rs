@@ -1,4 +1,4 @@
-//! Lines of one width along middles that were traced.
+//! Lines of one width, or of a varying one, along middles that were traced.
 //!
 //! The integral of the shares across a line is its width, and their mean is its middle, whatever the filter is.
 
@@ -35,6 +35,16 @@ pub(in crate::trace) struct Middle {
     pub(in crate::trace) is_closed: bool,
     /// About half its width, px.
     pub(in crate::trace) radius: f64,
+    /// About half its width at each place, px, if that varies.
+    pub(in crate::trace) radii: Vec<f64>,
+    /// Discs in which other lines are, too, so that profiles do not tell its width: centres and radii, px.
+    pub(in crate::trace) crossings: Vec<(Point, f64)>,
+}
+
+impl Middle {
+    fn is_varying(&self) -> bool {
+        !self.radii.is_empty()
+    }
 }
 
 /// Lines along some middles that cover what `shares` tell, and the length of the description of the page by them; `None` if that will not
@@ -50,9 +60,8 @@ pub(super) fn lines(
         .iter()
         .map(|middle| profiles(field, shares, middle))
         .collect();
-    let beyond: f64 = (0..middles.len())
-        .map(|i| beyond(middles, i, &profiles[i]))
-        .sum();
+    let even = (0..middles.len()).filter(|&i| !middles[i].is_varying());
+    let beyond: f64 = even.map(|i| beyond(middles, i, &profiles[i])).sum();
     if beyond > LOST * most + WIDE {
         return None;
     }
@@ -218,15 +227,11 @@ impl<'a> Drawn<'a> {
     /// What a line is to cover in the place of those that are `gone`, beside the others.
     fn target(&self, own: &Line, gone: &[usize]) -> Target {
         // Ends and corners may be some way off: bands of 6 px side by side, as wide as the line on each side.
-        let count = (own.radius / 6.0).ceil() as i32 + 1;
+        let radius = own.radius();
+        let count = (radius / 6.0).ceil() as i32 + 1;
         let wide = (-count..=count).filter_map(|k| {
-            let radius = own.radius + 6.0 * f64::from(k);
-            (k != 0 && radius > 0.0).then(|| {
-                Ring::Line(Line {
-                    radius,
-                    ..own.clone()
-                })
-            })
+            let by = 6.0 * f64::from(k);
+            (k != 0 && radius + by > 0.0).then(|| Ring::Line(own.widened(by)))
         });
         let wide: Vec<Ring> = wide.collect();
         let wide: Vec<&Ring> = wide.iter().collect();
@@ -387,8 +392,13 @@ fn off(line: &Line, target: &Target) -> Vec<bool> {
     let covered = Coverage::of(&Ring::Line(line.clone()), &target.band).shares();
     let count = line.knots.len();
     let is_off = |i: usize| {
+        let end = Knot {
+            segment: Segment::Line,
+            is_smooth: false,
+            ..line.knots[(i + 1) % count]
+        };
         let part = Ring::Line(Line {
-            knots: vec![line.knots[i], corner(line.knots[(i + 1) % count].at)],
+            knots: vec![line.knots[i], end],
             is_closed: false,
             ..line.clone()
         });
@@ -422,8 +432,8 @@ fn edits(line: &Line, is_off: &[bool]) -> Vec<Changed> {
         },
     };
     let mut edits = Vec::new();
-    // 1. Square ends and mitred corners are those of straight lines.
-    if line.cap == Cap::Butt || line.is_within(FLAT) {
+    // 1. Square ends and mitred corners are those of straight lines of one width.
+    if line.is_even && (line.cap == Cap::Butt || line.is_within(FLAT)) {
         edits.push(Changed {
             line: with_other_ends(line),
             near: None,
@@ -434,6 +444,10 @@ fn edits(line: &Line, is_off: &[bool]) -> Vec<Changed> {
         let mut own = Vec::new();
         if is_off.get(i) == Some(&true) {
             own = edits::longer(&line.knots, i);
+            // The width may bend where the middle does not.
+            if !line.is_even {
+                own.extend(edits::halved(&line.knots, i));
+            }
         }
         if i < line.segments() {
             own.extend(edits::shorter(&line.knots, i));
@@ -446,11 +460,20 @@ fn edits(line: &Line, is_off: &[bool]) -> Vec<Changed> {
             knots.remove(i);
             knots[0].is_smooth = false;
             // Behind the last vertex is nothing.
-            let last = corner(knots[count - 2].at);
-            knots[count - 2] = last;
+            let last = &mut knots[count - 2];
+            (last.segment, last.is_smooth) = (Segment::Line, false);
             edits.push(at(knots, i));
         }
         edits.extend(without_segment(&line.knots, i, line.is_closed).map(|knots| at(knots, i)));
+    }
+    // 4. One width.
+    if !line.is_even {
+        let radii = line.knots.iter().map(|knot| knot.radius);
+        let mean = radii.sum::<f64>() / count as f64;
+        edits.push(Changed {
+            line: Line::even(&line.knots, line.is_closed, mean, line.cap),
+            near: None,
+        });
     }
     // Mitred corners are those of straight lines.
     edits.retain(|Changed { line, .. }| line.cap == Cap::Round || line.is_within(0.0));
@@ -492,7 +515,7 @@ fn without_segment(knots: &[Knot], i: usize, is_closed: bool) -> Option<Vec<Knot
 /// The line with the other kind of ends, which covers as much.
 fn with_other_ends(line: &Line) -> Line {
     // A half disc covers ½πr², as much as a rectangle 2r wide and ¼πr long.
-    let beyond = FRAC_PI_4 * line.radius;
+    let beyond = FRAC_PI_4 * line.radius();
     let (cap, beyond) = match line.cap {
         Cap::Round => (Cap::Butt, beyond),
         Cap::Butt => (Cap::Round, -beyond),
@@ -519,6 +542,9 @@ fn with_other_ends(line: &Line) -> Line {
 
 /// The lines along one middle: the cheapest description, and shapes near it.
 fn described(middle: &Middle, profiles: &[Profile]) -> Vec<Line> {
+    if middle.is_varying() {
+        return swelling(middle, profiles).into_iter().collect();
+    }
     let (samples, radius) = samples(middle, profiles);
     let shapes = match middle.is_closed {
         true => shapes::near(&samples, true),
@@ -544,12 +570,7 @@ fn described(middle: &Middle, profiles: &[Profile]) -> Vec<Line> {
             })
             .collect(),
     };
-    let line = |knots: Vec<Knot>| Line {
-        knots,
-        is_closed: middle.is_closed,
-        radius,
-        cap: Cap::Round,
-    };
+    let line = |knots: Vec<Knot>| Line::even(&knots, middle.is_closed, radius, Cap::Round);
     own.into_iter()
         .chain(shapes)
         .filter(|knots| knots.len() > 1)
@@ -557,11 +578,70 @@ fn described(middle: &Middle, profiles: &[Profile]) -> Vec<Line> {
         .collect()
 }
 
+/// The line of varying width along one middle.
+fn swelling(middle: &Middle, profiles: &[Profile]) -> Option<Line> {
+    let is_crossed = |p: Point| {
+        let mut crossings = middle.crossings.iter();
+        crossings.any(|(at, radius)| (*at - p).hypot() < *radius)
+    };
+    let known = profiles.iter().filter(|profile| !is_crossed(profile.at));
+    let samples: Vec<Sample> = known.filter_map(Profile::whole).collect();
+    // Ends that are crossed, or too thin for profiles, are somewhere there.
+    let end = |at: Option<&Point>| {
+        let far = |p: &&Point| {
+            let ends = [samples.first(), samples.last()].into_iter().flatten();
+            ends.map(|s| (s.at - **p).hypot())
+                .fold(f64::INFINITY, f64::min)
+                > 1.5
+        };
+        at.filter(far).map(|&at| Sample {
+            at,
+            sigma: LOOSE,
+            gap: None,
+            half: None,
+        })
+    };
+    let [first, last] = match middle.is_closed {
+        true => [None; 2],
+        false => [end(middle.places.first()), end(middle.places.last())],
+    };
+    let samples: Vec<Sample> = first
+        .into_iter()
+        .chain(samples.iter().copied())
+        .chain(last)
+        .collect();
+    let knots = match samples.len() {
+        0..5 => {
+            let radii = [middle.radii.first(), middle.radii.last()];
+            let ends = [middle.places.first(), middle.places.last()];
+            let knots = ends.into_iter().zip(radii).filter_map(|(at, radius)| {
+                Some(Knot {
+                    radius: *radius?,
+                    ..corner(*at?)
+                })
+            });
+            knots.collect()
+        }
+        _ => describe::line(&samples, middle.is_closed)?,
+    };
+    let line = Line {
+        knots,
+        is_closed: middle.is_closed,
+        is_even: false,
+        cap: Cap::Round,
+    };
+    // Radii are positive.
+    Some(line.widened(0.0)).filter(|line| line.knots.len() > 1)
+}
+
+/// Standard deviation of the end of a middle that no profile tells, px. A guess.
+const LOOSE: f64 = 1.0;
+
 /// Profiles across a middle, a px apart.
 fn profiles(field: &Field, shares: &Shares<'_>, middle: &Middle) -> Vec<Profile> {
     let mut profiles: Vec<Profile> = Vec::new();
     let mut left = 0.5;
-    for ends in middle.places.windows(2) {
+    for (i, ends) in middle.places.windows(2).enumerate() {
         let way = ends[1] - ends[0];
         let length = way.hypot();
         while left < length {
@@ -569,7 +649,7 @@ fn profiles(field: &Field, shares: &Shares<'_>, middle: &Middle) -> Vec<Profile>
                 field,
                 shares,
                 (ends[0] + left / length * way, way / length),
-                middle.radius,
+                middle.radii.get(i).copied().unwrap_or(middle.radius),
             ));
             left += 1.0;
         }
@@ -630,6 +710,7 @@ fn samples(middle: &Middle, profiles: &[Profile]) -> (Vec<Sample>, f64) {
                     at: corners[corner],
                     sigma: f64::INFINITY,
                     gap: Some(gaps),
+                    half: None,
                 });
                 gaps += 1;
             }
@@ -694,6 +775,8 @@ struct Profile {
     sides: [Option<f64>; 2],
     /// What it covers at least, px.
     least: f64,
+    /// About half the width there, px.
+    radius: f64,
     doubt: f64,
 }
 
@@ -723,6 +806,7 @@ impl Profile {
             normal,
             sides: sides.map(|(_, whole)| whole),
             least: sides[0].0 + sides[1].0,
+            radius,
             doubt,
         }
     }
@@ -748,9 +832,27 @@ impl Profile {
             at: self.at + along * self.normal,
             sigma,
             gap: None,
+            half: None,
+        })
+    }
+
+    /// The middle of a line of any width, and half of that; `None` unless that is about as the skeleton tells.
+    fn whole(&self) -> Option<Sample> {
+        let [before, behind] = [self.sides[0]?, self.sides[1]?];
+        let half = 0.5 * (before + behind);
+        let is_odd = (half - self.radius).abs() > ODD_HALF[0] + ODD_HALF[1] * self.radius;
+        let sigma = math::hypot(CLEAN, self.doubt / (2.0 * half).max(1.0).sqrt());
+        (!is_odd && half > 0.05).then(|| Sample {
+            at: self.at + 0.5 * (behind - before) * self.normal,
+            sigma,
+            gap: None,
+            half: Some(half),
         })
     }
 }
+
+/// As [`ODD`], of half the width beside the radius of the skeleton there, whose pixels are half a px wide. A guess.
+const ODD_HALF: [f64; 2] = [0.7, 0.3];
 
 #[cfg(test)]
 mod tests {
@@ -792,21 +894,16 @@ mod tests {
             places: middle.iter().map(|[x, y]| Point::new(*x, *y)).collect(),
             is_closed: traced.is_closed,
             radius: 3.0,
+            radii: Vec::new(),
+            crossings: Vec::new(),
         };
         lines(&field, &shares, &[middle], f64::INFINITY).unwrap().0
     }
 
     /// A line that is straight between these places.
     fn straight(places: &[[f64; 2]], cap: Cap, radius: f64) -> Line {
-        Line {
-            knots: places
-                .iter()
-                .map(|[x, y]| corner(Point::new(*x, *y)))
-                .collect(),
-            is_closed: false,
-            radius,
-            cap,
-        }
+        let knots = places.iter().map(|[x, y]| corner(Point::new(*x, *y)));
+        Line::even(&knots.collect::<Vec<_>>(), false, radius, cap)
     }
 
     fn assert_found(truth: &Line, middle: &[[f64; 2]]) {
@@ -815,7 +912,7 @@ mod tests {
             panic!("{found:?}")
         };
         assert_eq!(line.knots.len(), truth.knots.len(), "{line:?}");
-        assert!((line.radius - truth.radius).abs() < 0.02, "{line:?}");
+        assert!((line.radius() - truth.radius()).abs() < 0.02, "{line:?}");
         for (found, expected) in line.knots.iter().zip(&truth.knots) {
             assert!((found.at - expected.at).hypot() < 0.05, "{line:?}");
         }
@@ -823,17 +920,13 @@ mod tests {
 
     #[test]
     fn a_hook_is_two_lines_and_an_arc_between_them() {
-        let hook = Line {
-            knots: vec![
-                knot(12.3, 50.2, Segment::Along(1), false),
-                knot(12.3, 28.4, Segment::Arc(1.0), true),
-                knot(44.9, 28.4, Segment::Along(1), true),
-                knot(44.9, 46.1, Segment::Line, false),
-            ],
-            is_closed: false,
-            radius: 3.2,
-            cap: Cap::Round,
-        };
+        let knots = [
+            knot(12.3, 50.2, Segment::Along(1), false),
+            knot(12.3, 28.4, Segment::Arc(1.0), true),
+            knot(44.9, 28.4, Segment::Along(1), true),
+            knot(44.9, 46.1, Segment::Line, false),
+        ];
+        let hook = Line::even(&knots, false, 3.2, Cap::Round);
         let middle = [
             [12.0, 49.0],
             [12.5, 28.0],

@@ -118,7 +118,11 @@ impl<'a> Moving<'a> {
                     // An outline is one polyline, whichever of its vertices move.
                     Ring::Line(line) => {
                         moves[0] = true;
-                        indices[line.radius_index()] = Some(0);
+                        let first = line.radius_index();
+                        match line.is_even {
+                            true => indices[first] = Some(0),
+                            false => free.iter().for_each(|&i| indices[first + i] = Some(0)),
+                        }
                         joints.extend(ring.smooth());
                     }
                     _ => {

@@ -51,6 +51,7 @@ pub(super) fn samples(
                 at: math::point(at),
                 sigma: f64::INFINITY,
                 gap: Some(0),
+                half: None,
             });
             continue;
         }
@@ -80,6 +81,7 @@ pub(super) fn samples(
             at,
             sigma,
             gap: None,
+            half: None,
         }));
     }
     // 3. Two samples in one place say no more than one.
@@ -136,6 +138,7 @@ fn with_gaps(mut samples: Vec<Sample>) -> (Vec<Sample>, Vec<Vec<Point>>) {
                     at: middle,
                     sigma: f64::INFINITY,
                     gap: Some(gaps.len()),
+                    half: None,
                 });
                 gaps.push(run.iter().map(|sample| sample.at).collect());
             }

@@ -42,6 +42,8 @@ pub(in crate::trace) struct Knot {
     pub(super) segment: Segment,
     /// True if the segment before the vertex goes on in the direction of the one behind it.
     pub(super) is_smooth: bool,
+    /// Half the width of a line there, px; 0 of an outline.
+    pub(super) radius: f64,
 }
 
 impl Knot {
@@ -53,8 +55,15 @@ impl Knot {
     }
 }
 
-/// Most unknowns that move a vertex: those of a cubic, and the radius of a line.
-const MOST_SLOPES: usize = 9;
+/// Most unknowns that move a vertex: those of a cubic, and the radii at both ends of a segment of a line.
+const MOST_SLOPES: usize = 10;
+
+/// Half the width of a line at a vertex of its polyline, px, with its derivatives by the radii among the unknowns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Radius {
+    pub(super) value: f64,
+    pub(super) slopes: [(usize, f64); 2],
+}
 
 /// A vertex of the polyline that replaces a ring, with its derivatives by some unknowns of the ring: their index, and the change of
 /// x and y.
@@ -78,13 +87,15 @@ impl Vertex {
         }
     }
 
-    /// The vertex moved by a `radius` in a direction; the radius has an index among the unknowns.
-    pub(super) fn moved(&self, way: Vec2, (radius, index): (f64, usize)) -> Self {
+    /// The vertex moved by a radius in a direction.
+    pub(super) fn moved(&self, way: Vec2, radius: &Radius) -> Self {
         let mut moved = *self;
-        moved.at += radius * way;
-        if let Some(slot) = moved.slopes.get_mut(usize::from(self.count)) {
-            *slot = (index as u32, way);
-            moved.count += 1;
+        moved.at += radius.value * way;
+        for (index, slope) in radius.slopes.into_iter().filter(|(_, slope)| *slope != 0.0) {
+            if let Some(slot) = moved.slopes.get_mut(usize::from(moved.count)) {
+                *slot = (index as u32, slope * way);
+                moved.count += 1;
+            }
         }
         moved
     }

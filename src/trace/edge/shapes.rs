@@ -182,6 +182,7 @@ mod tests {
             at: samples[0].at,
             sigma: f64::INFINITY,
             gap: Some(0),
+            half: None,
         });
         match near(&samples, true).into_iter().next() {
             Some(Ring::Shape { shape, .. }) => shape,
