@@ -19,6 +19,7 @@ mod polyline;
 mod quantize;
 mod shade;
 mod shape;
+mod sweep;
 
 pub use arc::Arc;
 pub(crate) use arc::ArcNumbers;
@@ -59,8 +60,10 @@ pub enum Cap {
 pub struct Stroke {
     /// The centre line, px.
     pub path: Path,
-    /// Half the stroke width, px.
+    /// Half the stroke width, px; the largest of the `radii` if there are any.
     pub radius: f64,
+    /// Half the width at each vertex of the path, px; empty for a stroke of one width ([`Stroke::varying`]).
+    pub radii: Vec<f64>,
     /// Its ends and corners.
     pub cap: Cap,
     /// sRGB-encoded colour, 0..1.

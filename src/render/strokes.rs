@@ -218,6 +218,7 @@ impl<'a> StrokeRef<'a> {
             let stroke = Stroke {
                 path,
                 radius,
+                radii: Vec::new(),
                 cap: Cap::Butt,
                 color: self.color(),
                 opacity: self.opacity(),
@@ -237,6 +238,7 @@ impl<'a> StrokeRef<'a> {
         Stroke {
             path: self.to_path(),
             radius: self.radius().into(),
+            radii: Vec::new(),
             cap: Cap::Round,
             color: self.color(),
             opacity: self.opacity(),

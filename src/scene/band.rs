@@ -144,6 +144,7 @@ impl Band {
         Stroke {
             path: self.line,
             radius: 0.5 * self.width,
+            radii: Vec::new(),
             cap: Cap::Butt,
             ..like.clone()
         }
@@ -286,6 +287,7 @@ impl Mark {
                 Some(band) => Self::Stroke(Stroke {
                     path: band.line,
                     radius: 0.5 * band.width,
+                    radii: Vec::new(),
                     cap: Cap::Butt,
                     color: area.color,
                     opacity: area.opacity,

@@ -171,6 +171,7 @@ fn round(stroke: &Stroke, grid: &Grid) -> Stroke {
     Stroke {
         path,
         radius: 0.5 * width,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: quantized_color(stroke.color),
         opacity: quantized_opacity(stroke.opacity),
@@ -182,6 +183,7 @@ fn band(stroke: &Stroke, grid: &Grid) -> Option<Stroke> {
     let rounded = Stroke {
         path: stroke.path.rounded(grid),
         radius: 0.5 * grid.round(2.0 * stroke.radius),
+        radii: Vec::new(),
         cap: stroke.cap,
         color: quantized_color(stroke.color),
         opacity: quantized_opacity(stroke.opacity),
@@ -267,6 +269,7 @@ mod tests {
         Stroke {
             path,
             radius: 2.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.2, 0.5, 1.0],
             opacity: 1.0,

@@ -188,6 +188,7 @@ mod tests {
         Stroke {
             path: Path::line((k as f32, 2.0).into(), (k as f32 + 3.0, 8.0).into()),
             radius: 1.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [k as f32 / 7.0, 0.5, 0.2],
             opacity: 0.8,

@@ -264,6 +264,7 @@ mod tests {
         let stroke = Stroke {
             path: Path::line(Point::new(x, 10.0), Point::new(x, 90.0)),
             radius: 0.5 * width,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: color([level; 3]),
             opacity: 1.0,

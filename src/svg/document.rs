@@ -246,6 +246,7 @@ mod tests {
         let stroke = Stroke {
             path: Path::line((1.0, 1.0).into(), (5.0, 5.0).into()),
             radius: 1.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [1.0, 0.0, 0.0],
             opacity: 1.0,

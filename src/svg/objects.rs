@@ -93,6 +93,7 @@ mod tests {
         let stroke = Stroke {
             path: Path::line(Point::new(ax, ay), Point::new(bx, by)),
             radius: 1.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [grey; 3],
             opacity: 1.0,

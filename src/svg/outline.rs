@@ -132,6 +132,7 @@ mod tests {
         let stroke = Stroke {
             path: Path::canonical(points.iter().map(point).collect(), false),
             radius: 1.5,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [1.0, 0.4, 0.0],
             opacity,

@@ -295,6 +295,7 @@ fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {
     let stroke = |path| Stroke {
         path,
         radius: 0.5 * px(width),
+        radii: Vec::new(),
         cap: if is_band { Cap::Butt } else { Cap::Round },
         color: rgb(color),
         opacity: f32::from(opacity.unwrap_or(u8::MAX)) / 255.0,

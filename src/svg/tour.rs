@@ -370,6 +370,7 @@ mod tests {
         let stroke = Stroke {
             path,
             radius,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: color([level; 3]),
             opacity,

@@ -103,6 +103,7 @@ fn equal_of(band: &Band) -> Places {
     let middle = Strokes::from_iter([&Stroke {
         path: band.line.clone(),
         radius: 1.0,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [0.0; 3],
         opacity: 1.0,
@@ -229,6 +230,7 @@ mod tests {
         let stroke = Stroke {
             path,
             radius: 1.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.5; 3],
             opacity: 1.0,

@@ -189,6 +189,7 @@ fn filled(band: Band, area: &Area) -> Mark {
     let stroke = Stroke {
         path: band.line,
         radius: 0.5 * band.width,
+        radii: Vec::new(),
         cap: Cap::Butt,
         color: area.color,
         opacity: area.opacity,

@@ -168,6 +168,7 @@ mod tests {
         let stroke = Stroke {
             path: Path::new(vec![at(2.0), at(30.0)], false).unwrap(),
             radius,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [level; 3],
             opacity: 1.0,
