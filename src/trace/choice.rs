@@ -8,10 +8,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::Traced;
-use super::areas::Pixels;
-use super::edge::{Middle, Ring};
+use super::areas::{self, Pixels};
+use super::edge::{self, Middle, Ring};
 use super::even::{Pen, Shape, WAVERING};
-use super::fill::{Fill, Filled, Flat, Placing};
+use super::fill::{Fill, Filled, Flat, Placing, TIP};
 use super::gain::coverage;
 use super::parts::{COVERED, Part};
 use super::strokes::TracedStroke;
@@ -130,23 +130,31 @@ impl<'a> Choice<'a> {
     /// apart, edges are long, lines are left that nothing draws, or colours do not tell where edges are.
     pub(super) fn placed(&self, price: &(dyn Fn(&Mark) -> f32 + Sync)) -> Option<Vec<Traced>> {
         // Where lines join blobs of their colour is no edge, so that descents find it.
+        eprintln!("DBG apart {} long {} edges {}", self.flat.is_apart(), self.is_long(), self.flat.edges());
         if self.flat.is_apart() || self.is_long() {
             return None;
         }
         let placing = Placing::of(self.flat);
         // Where there is no damage, edges that colours do not tell are those of something else, such as gradients.
         let is_clean = self.flat.tracing.doubt.most() == 0.0;
-        let fills = placing.fills(|region| is_clean && !self.is_grouped(region))?;
+        // The tips of lines are no shapes.
+        let is_shape = |region: u32| self.flat.size(region) > TIP;
+        let has_to_be_sure =
+            |region: u32| is_clean && is_shape(region) && !self.is_grouped(region);
+        let fills = placing.fills(has_to_be_sure)?;
         let lines = |group: &Group| self.lines(group, &placing, &fills);
         let mut lines: Vec<Option<Vec<Stroke>>> = self.groups.par_iter().map(lines).collect();
         self.keep_pens(&mut lines, &fills);
         let won = lines.iter().map(Option::is_some).collect();
-        let chosen = self.chosen(&fills, lines, won, price).ok()?;
+        let mut chosen = self.chosen(&fills, lines, won, price).ok()?;
+        let has_ink = self.add_ink(&mut chosen, &placing, &fills);
         // What colours tell badly is to be fitted, and so are strokes that no region tells.
         let is_told = |(votes, stroke): (&Votes, &Option<_>)| !votes.is_empty() || stroke.is_none();
         let is_sure = self.votes.iter().zip(&chosen.strokes).all(is_told)
             && placing.is_sure(&fills, &chosen.is_stroked);
-        if !is_sure && is_clean {
+        for f in &fills { if !chosen.is_stroked[f.region as usize] && f.deviation>0.2 { eprintln!("DBG unsure {} size {} dev {}", f.region, f.size, f.deviation);} }
+        for (i,(v,st)) in self.votes.iter().zip(&chosen.strokes).enumerate() { if v.is_empty() && st.is_some() { eprintln!("DBG orphan {i}"); } }
+        if !is_sure && is_clean && !has_ink {
             return None;
         }
         let count = chosen.strokes.iter().flatten().count();
@@ -333,6 +341,57 @@ impl<'a> Choice<'a> {
         Some(drawn.collect())
     }
 
+    /// Draws shapes that no strokes draw by lines of varying width, if these have a shorter description.
+    fn add_ink(
+        &self,
+        chosen: &mut Chosen,
+        placing: &Placing<'_>,
+        fills: &[Fill<Ring>],
+    ) -> bool {
+        let open: BTreeMap<u32, &Fill<Ring>> = fills
+            .iter()
+            .filter(|fill| !chosen.is_stroked[fill.region as usize] && !fill.has_shades())
+            .map(|fill| (fill.region, fill))
+            .collect();
+        let is_one = |a: u32, b: u32| {
+            self.flat.label(a) == self.flat.label(b) || placing.is_tip_of(b, a)
+        };
+        // Larger ones first, as tips have not their colour.
+        let mut regions: Vec<u32> = open.keys().copied().collect();
+        regions.sort_by(|a, b| self.flat.size(*b).total_cmp(&self.flat.size(*a)));
+        let shapes = self.flat.scattered(&regions, GAP, is_one);
+        let shapes = shapes.into_iter().map(|shape| {
+            let fills = shape.into_iter().filter_map(|region| open.get(&region));
+            fills.copied().collect::<Vec<_>>()
+        });
+        let shapes: Vec<Vec<&Fill<Ring>>> = shapes.collect();
+        let drawn: Vec<Option<Vec<edge::Line>>> =
+            shapes.par_iter().map(|fills| placing.ink(fills)).collect();
+        for (fills, lines) in shapes.into_iter().zip(drawn) {
+            let Some(lines) = lines else { continue };
+            if lines.is_empty() { continue }
+            for fill in &fills {
+                chosen.is_stroked[fill.region as usize] = true;
+            }
+            let gain: f32 = fills.iter().map(|fill| fill.gain).sum();
+            let gain = gain / (self.flat.mattes * lines.len()) as f32;
+            let Some(fill) = fills.first() else { continue };
+            let (color, opacity) = areas::ink(&fill.color, self.flat.mattes);
+            for line in lines {
+                let stroke = Stroke {
+                    path: line.path(),
+                    radius: line.radius(),
+                    radii: line.varying().unwrap_or_default(),
+                    cap: line.cap(),
+                    color,
+                    opacity,
+                };
+                chosen.strokes.push(Some((stroke, fill.rank, gain)));
+            }
+        }
+        chosen.strokes.len() > self.strokes.len()
+    }
+
     /// Forgets lines that are things rather than lines: a disc and a bar have as many numbers. A long line tells a pen, which draws
     /// others as wide, and has one width.
     fn keep_pens(&self, lines: &mut [Option<Vec<Stroke>>], fills: &[Fill<Ring>]) {
@@ -393,6 +452,9 @@ impl<'a> Choice<'a> {
         }
     }
 }
+
+/// Parts of a line that come apart where it is thin are as near as this, px. A guess.
+const GAP: usize = 3;
 
 /// Most pairs of pixels between areas that are placed where they are seen: blobs of noise of 1,000 px, which have 23,000, take 22 s instead of
 /// 16 s. Emoji of 1,024 px have 7,000 to 13,000.

@@ -35,6 +35,7 @@ pub(super) fn middles(field: &Field) -> Vec<Middle> {
             let edges = graph.edges.iter_mut();
             edges.flat_map(|edge| &mut edge.spots).for_each(scaled);
             graph.clean();
+            graph.cross();
             let crossings: Vec<Spot> = graph.crossings().collect();
             lines::chain(&graph)
                 .into_iter()

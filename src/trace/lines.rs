@@ -5,7 +5,7 @@
 //! and so on, so that lines run through crossings and end where nothing continues them.
 
 use super::skeleton::{Edge, Graph, Spot};
-use crate::math::{distance, median};
+use crate::math::{self, distance, median};
 
 // All of these are guesses.
 /// A hook is thinner than this share of its line's radius, and not longer than so many of its radii.
@@ -18,6 +18,11 @@ const SPUR: [f32; 2] = [1.2, 0.35];
 const SHARPEST_TURN: f32 = -0.86;
 /// A line is smooth at a node if the cosine of its turn there is above this.
 const SMOOTH_TURN: f32 = 0.82;
+
+/// Longest edge that two lines share, px, and in radii of its ends.
+const SHARED: [f32; 2] = [4.0, 8.0];
+/// Least cosine of the turn of a line that goes on through an edge that it shares.
+const STRAIGHT: f32 = 0.8;
 
 /// A run of a skeleton from end to end.
 #[derive(Debug, Clone)]
@@ -79,11 +84,77 @@ impl Graph {
         while prune(self) || contract(self) {}
     }
 
+    /// Makes one node of both ends of each edge that two lines share, as they cross at a small angle.
+    pub(super) fn cross(&mut self) {
+        while let Some(shared) = self.shared() {
+            let reach = 0.5 * self.length(&self.edges[shared]);
+            self.make_one(shared, reach);
+        }
+    }
+
+    /// An edge that two lines share: two pairs of edges at its ends go on straight through it.
+    fn shared(&self) -> Option<usize> {
+        let runs: Vec<Vec<Spot>> = self.edges.iter().map(|edge| self.run(edge)).collect();
+        let is_shared = |i: &usize| {
+            let edge = &self.edges[*i];
+            let Some([a, b]) = edge.nodes.filter(|[a, b]| a != b) else {
+                return false;
+            };
+            let [from, to] = [a, b].map(|node| self.nodes[node]);
+            let length = self.length(edge);
+            if length > SHARED[0] + SHARED[1] * from.radius.max(to.radius) {
+                return false;
+            }
+            let leaving = |node: usize| {
+                let ends = ends_at(self, node).into_iter().filter(|end| end.0 != *i);
+                let ways = ends.map(|end| direction(&runs, end, self.nodes[node]));
+                ways.collect::<Vec<_>>()
+            };
+            let through = math::direction(from.at, to.at);
+            let dot = |u: [f32; 2], v: [f32; 2]| u[0] * v[0] + u[1] * v[1];
+            let ends = leaving(b);
+            let mut pairs: Vec<(usize, usize, f32)> = Vec::new();
+            for (k, u) in leaving(a).into_iter().enumerate() {
+                for (m, v) in ends.iter().enumerate() {
+                    let straight = (-dot(u, *v)).min(-dot(u, through)).min(dot(through, *v));
+                    pairs.push((k, m, straight));
+                }
+            }
+            pairs.retain(|pair| pair.2 > STRAIGHT);
+            // Two of different edges.
+            pairs.iter().enumerate().any(|(n, p)| {
+                let mut others = pairs[n + 1..].iter();
+                others.any(|q| p.0 != q.0 && p.1 != q.1)
+            })
+        };
+        (0..self.edges.len()).find(is_shared)
+    }
+
     /// The nodes at which several edges meet.
     pub(super) fn crossings(&self) -> impl Iterator<Item = Spot> + '_ {
         let degrees = self.degrees();
         let nodes = self.nodes.iter().zip(degrees);
         nodes.filter(|(_, degree)| *degree > 2).map(|(node, _)| *node)
+    }
+
+    /// Makes one node of both ends of an edge, with a disc of this radius at least.
+    fn make_one(&mut self, edge: usize, radius: f32) {
+        let Some([kept, gone]) = self.edges.remove(edge).nodes else {
+            return;
+        };
+        let (a, b) = (self.nodes[kept], self.nodes[gone]);
+        let at = [0, 1].map(|k| 0.5 * (a.at[k] + b.at[k]));
+        self.nodes[kept] = Spot {
+            at,
+            radius: a.radius.max(b.radius).max(radius),
+        };
+        for edge in &mut self.edges {
+            for node in edge.nodes.iter_mut().flatten() {
+                if *node == gone {
+                    *node = kept;
+                }
+            }
+        }
     }
 
     fn degrees(&self) -> Vec<usize> {
@@ -151,21 +222,7 @@ fn contract(graph: &mut Graph) -> bool {
     let Some(short) = graph.edges.iter().position(is_short) else {
         return false;
     };
-    let Some([kept, gone]) = graph.edges.remove(short).nodes else {
-        return false;
-    };
-    let (a, b) = (graph.nodes[kept], graph.nodes[gone]);
-    graph.nodes[kept] = Spot {
-        at: [0, 1].map(|k| 0.5 * (a.at[k] + b.at[k])),
-        radius: a.radius.max(b.radius),
-    };
-    for edge in &mut graph.edges {
-        for node in edge.nodes.iter_mut().flatten() {
-            if *node == gone {
-                *node = kept;
-            }
-        }
-    }
+    graph.make_one(short, 0.0);
     true
 }
 

@@ -14,18 +14,25 @@ pub(in crate::trace) struct Fill<R = Path> {
     /// The region that it shows.
     pub(in crate::trace) region: u32,
     pub(super) rings: Vec<R>,
-    pub(super) color: Pixel,
+    pub(in crate::trace) color: Pixel,
     /// Its gradients, back to front.
     pub(super) shades: Vec<Shade>,
     /// The pixels that show it.
-    pub(super) size: f32,
+    pub(in crate::trace) size: f32,
     /// Squared error that it removes, summed over all mattes.
     pub(in crate::trace) gain: f32,
-    pub(super) rank: usize,
+    pub(in crate::trace) rank: usize,
     /// The regions that it covers.
     pub(super) covers: Vec<u32>,
     /// Deviation of the shares of pixels from what the rings cover, in the middle of edges, where these are placed.
-    pub(super) deviation: f64,
+    pub(in crate::trace) deviation: f64,
+}
+
+impl<R> Fill<R> {
+    /// True if it is filled with gradients.
+    pub(in crate::trace) fn has_shades(&self) -> bool {
+        !self.shades.is_empty()
+    }
 }
 
 /// Colours that differ by less are one, levels. A guess.

@@ -200,7 +200,7 @@ pub(super) fn best_mixture(colors: &Colors<'_>, near: &[u16], i: usize) -> Mixtu
 }
 
 /// The share of `b` in the mixture of `a` and `b` that is nearest to `pixel`, and its squared error.
-fn mixed(pixel: &Pixel, a: &Pixel, b: &Pixel) -> (f32, f32) {
+pub(super) fn mixed(pixel: &Pixel, a: &Pixel, b: &Pixel) -> (f32, f32) {
     let (mut along, mut length2) = (0.0, 1e-9);
     for k in 0..6 {
         along += (pixel[k] - a[k]) * (b[k] - a[k]);

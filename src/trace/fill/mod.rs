@@ -33,7 +33,7 @@ mod stack;
 mod translucent;
 mod worth;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
@@ -45,7 +45,7 @@ use crate::scene::{Area, Path, Rgb};
 use colors::{CANVAS, NONE};
 pub(super) use compound::Fill;
 use outline::Surroundings;
-pub(super) use placing::Placing;
+pub(super) use placing::{Placing, TIP};
 use regions::{Region, Regions};
 use shades::Shaded;
 use stack::{Layer, Stack};
@@ -386,6 +386,44 @@ impl<'a> Flat<'a> {
             .list
             .iter()
             .any(|region| region.part != Part::Whole)
+    }
+
+    /// Some regions, those together that are as near to each other as `gap`, px, and are one with the first of them.
+    pub(super) fn scattered(
+        &self,
+        regions: &[u32],
+        gap: usize,
+        is_one: impl Fn(u32, u32) -> bool,
+    ) -> Vec<Vec<u32>> {
+        let Regions {
+            width, height, of, ..
+        } = &self.regions;
+        let mut open: BTreeSet<u32> = regions.iter().copied().collect();
+        let mut found = Vec::new();
+        for &first in regions {
+            if !open.remove(&first) {
+                continue;
+            }
+            let mut shape = vec![first];
+            let mut next = 0;
+            while next < shape.len() {
+                for &i in &self.regions.list[shape[next] as usize].members {
+                    let [x, y] = [i as usize % width, i as usize / width];
+                    for row in y.saturating_sub(gap)..(y + gap + 1).min(*height) {
+                        let columns = x.saturating_sub(gap)..(x + gap + 1).min(*width);
+                        for other in columns.map(|x| of[row * width + x]) {
+                            if open.contains(&other) && is_one(first, other) {
+                                open.remove(&other);
+                                shape.push(other);
+                            }
+                        }
+                    }
+                }
+                next += 1;
+            }
+            found.push(shape);
+        }
+        found
     }
 
     /// The label of a region.

@@ -4,10 +4,13 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::super::areas::{LEVEL, away};
+use super::super::areas::{LEVEL, Pixel, away};
 use super::super::contour::Field;
 use super::super::edge::{self, Ring};
+use super::super::ink;
 use super::compound::{self, Fill};
+use super::colors::CANVAS;
+use super::mixtures::mixed;
 use super::regions::{Region, Regions};
 use super::stack::Layer;
 use super::{Filled, Flat};
@@ -22,6 +25,14 @@ const RENDERED: f64 = 0.05;
 /// Edges whose pixels deviate by less from what is described, shares, are where they are seen. A guess: where colours are few they deviate
 /// by 0.05 to 0.1, between the steps of gradients by 0.2 to 8.
 const SURE: f64 = 0.2;
+/// A region of as many pixels may be the tip of a line, which is pale as it is thin. A guess.
+pub(in crate::trace) const TIP: f32 = 40.0;
+/// Farthest that the tip of a line goes on as it gets paler, px. A guess.
+const PALE: i32 = 12;
+/// How far lines that the picture's border cuts go on beyond it, px.
+const BORDER: i32 = 3;
+/// Root of the squared error below which a pixel is a mixture of an ink and what it lies on.
+const MIXED: f32 = 8.0 * LEVEL;
 /// Least share of a pixel that is not hidden for it to tell something of what is seen there. A guess.
 const LEAST_SEEN: f32 = 0.03;
 
@@ -30,6 +41,13 @@ pub(in crate::trace) struct Placing<'a> {
     flat: &'a Flat<'a>,
     spreads: Vec<f64>,
     gains: Vec<f32>,
+}
+
+/// What is seen of some shapes: the share of each pixel that they cover, its standard deviation, and their rings.
+struct Seen {
+    field: Field,
+    doubts: Vec<f64>,
+    rings: Vec<Ring>,
 }
 
 impl<'a> Placing<'a> {
@@ -110,6 +128,121 @@ impl<'a> Placing<'a> {
         fills: &[&Fill<Ring>],
         middles: &[edge::Middle],
     ) -> Option<Vec<edge::Line>> {
+        let Seen {
+            field,
+            doubts,
+            rings,
+        } = self.seen(fills)?;
+        let lines = edge::lines(&field, &doubts, middles, &rings)?;
+        let [by_lines, by_rings] = lines.lengths;
+        (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
+    }
+
+    /// Lines of varying width that draw what some shapes show; `None` if these have a shorter description.
+    pub(in crate::trace) fn ink(&self, fills: &[&Fill<Ring>]) -> Option<Vec<edge::Line>> {
+        let Seen {
+            field,
+            doubts,
+            rings,
+        } = self.inked(fills)?;
+        let middles = ink::middles(&field);
+        let t = std::time::Instant::now();
+        eprintln!("DBG region {} size {} middles {}", fills.len(), fills.iter().map(|f| f.size).sum::<f32>(), middles.len());
+        let lines = edge::lines(&field, &doubts, &middles, &rings);
+        eprintln!("DBG {:?} {:?}", t.elapsed(), lines.as_ref().map(|l| (l.lines.len(), l.lengths, l.deviation)));
+        let lines = lines?;
+        for l in &lines.lines { eprintln!("DBGLINE {}", l.dbg()); }
+        let [by_lines, by_rings] = lines.lengths;
+        (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
+    }
+
+    /// What is seen of some shapes in the ink of the first one, which may be pale on what that lies on where they are thin.
+    fn inked(&self, fills: &[&Fill<Ring>]) -> Option<Seen> {
+        let flat = self.flat;
+        let regions = &flat.regions;
+        let size = [regions.width, regions.height].map(|v| v as i32);
+        let main = fills.first()?.region;
+        let back = flat.stack.below[main as usize];
+        let ids: Vec<u32> = fills.iter().map(|fill| fill.region).collect();
+        let is_own = flat.members(&ids);
+        // 1. The box of all, with what may be too pale to be one of them.
+        let own = ids
+            .iter()
+            .flat_map(|&r| &regions.list[r as usize].members);
+        let (mut low, mut high) = (size, [0; 2]);
+        for &i in own {
+            let at = [i as usize % regions.width, i as usize / regions.width].map(|v| v as i32);
+            low = [0, 1].map(|k| low[k].min(at[k]));
+            high = [0, 1].map(|k| high[k].max(at[k] + 1));
+        }
+        let low = low.map(|v| (v - PALE).max(-BORDER));
+        let high = [0, 1].map(|k| (high[k] + PALE).min(size[k] + BORDER));
+        // 2. Each pixel is a mixture of the ink and what it lies on, or it shows something else.
+        let share = |[x, y]: [i32; 2]| {
+            let is_edge = x == low[0] || y == low[1] || x + 1 == high[0] || y + 1 == high[1];
+            if is_edge {
+                return (0.0, f64::INFINITY);
+            }
+            // At the picture's border lines go on.
+            let [column, row] = [0, 1].map(|k| [x, y][k].clamp(0, size[k] - 1));
+            let is_beyond = [column, row] != [x, y];
+            let i = row as usize * regions.width + column as usize;
+            let region = regions.of[i];
+            let target = flat.pixels.target.at(i);
+            let [below, ink] = self.inks(main, i);
+            let (share, error) = mixed(&target, &below, &ink);
+            let is_between = |region: u32| {
+                let is_back = match back {
+                    Some(back) => back == region,
+                    None => flat.label(region) == CANVAS,
+                };
+                is_own[region as usize] || is_back || flat.size(region) <= TIP
+            };
+            if !is_between(region) || !is_between(regions.second[i]) || error > MIXED * MIXED {
+                let own = f32::from(u8::from(is_own[region as usize]));
+                return (own, f64::INFINITY);
+            }
+            let contrast = f64::from(away(&below, &ink)).max(0.01);
+            let noise = f64::from(flat.doubts[i].max(0.3) * LEVEL);
+            let noise = noise.max(self.spreads[main as usize]);
+            let doubt = math::hypot(RENDERED, math::hypot(noise, f64::from(error.sqrt())) / contrast);
+            (share, if is_beyond { f64::INFINITY } else { doubt })
+        };
+        let places = (low[1]..high[1]).flat_map(|y| (low[0]..high[0]).map(move |x| [x, y]));
+        let (values, doubts) = places.map(share).unzip();
+        let rings = fills.iter().flat_map(|fill| fill.rings.iter().cloned());
+        Some(Seen {
+            field: Field {
+                origin: low,
+                width: (high[0] - low[0]) as usize,
+                values,
+            },
+            doubts,
+            rings: rings.collect(),
+        })
+    }
+
+    /// True if a region may be the tip of a line in the colour of another one: it is small, and a mixture of that colour and what that
+    /// lies on.
+    pub(in crate::trace) fn is_tip_of(&self, region: u32, line: u32) -> bool {
+        let region = &self.flat.regions.list[region as usize];
+        let [below, ink] = self.inks(line, region.members[0] as usize);
+        let (_, error) = mixed(&region.color, &below, &ink);
+        region.members.len() as f32 <= TIP && error < MIXED * MIXED
+    }
+
+    /// The colours at pixel `i` of what a region lies on, and of the region.
+    fn inks(&self, region: u32, i: usize) -> [Pixel; 2] {
+        let flat = self.flat;
+        let below = match flat.stack.below[region as usize] {
+            Some(back) => flat.shown(back, i),
+            None => flat.pixels.canvas.at(i),
+        };
+        [below, flat.shown(region, i)]
+    }
+
+    /// What is seen of some shapes.
+    fn seen(&self, fills: &[&Fill<Ring>]) -> Option<Seen> {
         let regions: Vec<u32> = fills.iter().map(|fill| fill.region).collect();
         let covers = fills.iter().flat_map(|fill| &fill.covers);
         let covers: BTreeSet<u32> = covers.copied().collect();
@@ -128,9 +261,11 @@ impl<'a> Placing<'a> {
         let doubts = self.doubts(&mut field, (&shown, &hides));
         let rings = fills.iter().flat_map(|fill| fill.rings.iter().cloned());
         let rings: Vec<Ring> = rings.collect();
-        let lines = edge::lines(&field, &doubts, middles, &rings)?;
-        let [by_lines, by_rings] = lines.lengths;
-        (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
+        Some(Seen {
+            field,
+            doubts,
+            rings,
+        })
     }
 
     /// The standard deviation of the share of each pixel of a field, and, where something `hides` a part of the pixel, that share: all
