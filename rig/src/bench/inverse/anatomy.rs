@@ -19,6 +19,8 @@ pub(super) struct Anatomy {
     pub(super) parameters: usize,
     /// All of them.
     pub(super) numbers: usize,
+    /// Those of shapes and of the widths of strokes.
+    pub(super) line_numbers: usize,
     /// True if a rectangle fills the page behind everything else.
     pub(super) has_page: bool,
 }
@@ -44,11 +46,14 @@ impl Anatomy {
         };
         for (_, &node) in counted {
             anatomy.parameters += parameters(node);
-            anatomy.numbers += node
-                .attributes()
-                .filter(|a| a.namespace().is_none())
-                .map(|a| numbers(node.tag_name().name(), a.name(), a.value()))
-                .sum::<usize>();
+            for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
+                let name = attribute.name();
+                let count = numbers(node.tag_name().name(), name, attribute.value());
+                anatomy.numbers += count;
+                if name == "stroke-width" || is_shape(node) && GEOMETRY.contains(&name) {
+                    anatomy.line_numbers += count;
+                }
+            }
         }
         Ok(anatomy)
     }
@@ -87,6 +92,29 @@ pub(super) fn elements(svg: &str) -> Result<Vec<Range<usize>>> {
         .collect())
 }
 
+/// The text with each of the painted shapes alone, from back to front, without a rectangle that fills the page.
+///
+/// # Errors
+/// As [`Anatomy::of`].
+pub(super) fn each_alone(svg: &str) -> Result<Vec<String>> {
+    let document = parse(svg)?;
+    let root = document.root_element();
+    let all = painted_with_page(root);
+    let mut gaps = Vec::new();
+    let mut end = 0;
+    for shape in &all {
+        gaps.push(&svg[end..shape.range().start]);
+        end = shape.range().end;
+    }
+    gaps.push(&svg[end..]);
+    let alone = |i: usize| {
+        let shape = &svg[all[i].range()];
+        gaps[..=i].concat() + shape + &gaps[i + 1..].concat()
+    };
+    let first = all.len() - painted(root).len();
+    Ok((first..all.len()).map(alone).collect())
+}
+
 /// The places in the text of an artist's things: the outermost groups and shapes, or all shapes if there is only one.
 ///
 /// # Errors
@@ -111,6 +139,14 @@ pub(super) fn things(svg: &str) -> Result<Vec<Range<usize>>> {
 
 /// The painted shapes but a rectangle that fills the page.
 fn painted<'a, 'input>(root: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
+    let mut shapes = painted_with_page(root);
+    if shapes.first().is_some_and(|first| is_page(*first, root)) {
+        shapes.remove(0);
+    }
+    shapes
+}
+
+fn painted_with_page<'a, 'input>(root: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
     let is_drawn = |node: &Node<'_, '_>| {
         !node
             .ancestors()
@@ -120,11 +156,7 @@ fn painted<'a, 'input>(root: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
         .descendants()
         .filter(|node| is_painted(*node))
         .filter(is_drawn);
-    let mut shapes: Vec<_> = shapes.collect();
-    if shapes.first().is_some_and(|first| is_page(*first, root)) {
-        shapes.remove(0);
-    }
-    shapes
+    shapes.collect()
 }
 
 /// Elements whose contents are painted where they are used.
@@ -145,6 +177,11 @@ fn parse(svg: &str) -> Result<Document<'_>> {
 
 const SHAPES: [&str; 7] = [
     "path", "circle", "ellipse", "rect", "line", "polyline", "polygon",
+];
+
+/// The attributes of shapes that tell where they are.
+const GEOMETRY: [&str; 15] = [
+    "d", "points", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2",
 ];
 
 fn is_shape(node: Node<'_, '_>) -> bool {
