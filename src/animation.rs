@@ -6,7 +6,7 @@
 //! use strokefit::scene::{Cap, Scene, Path, Stage, Stroke};
 //!
 //! let (cap, color) = (Cap::Round, [0.1; 3]);
-//! let stroke = |x| Stroke { path: Path::dot((x, 4.0).into()), radius: 2.0, cap, color, opacity: 1.0 };
+//! let stroke = |x| Stroke { path: Path::dot((x, 4.0).into()), radius: 2.0, radii: Vec::new(), cap, color, opacity: 1.0 };
 //! let scene = Scene {
 //!     stages: vec![Stage::from_iter([3.0, 8.0, 13.0].map(stroke))],
 //!     ..Scene::empty(16, 8, Some([1.0; 3]))
@@ -245,6 +245,7 @@ mod tests {
                 (20.0, (k * 5 % 24) as f32).into(),
             ),
             radius: 1.5,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [k as f32 / 20.0, 0.3, 0.8 - k as f32 / 40.0],
             opacity: 0.6,

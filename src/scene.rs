@@ -19,6 +19,7 @@ mod polyline;
 mod quantize;
 mod shade;
 mod shape;
+mod sweep;
 
 pub use arc::Arc;
 pub(crate) use arc::ArcNumbers;
@@ -59,8 +60,10 @@ pub enum Cap {
 pub struct Stroke {
     /// The centre line, px.
     pub path: Path,
-    /// Half the stroke width, px.
+    /// Half the stroke width, px; the largest of the `radii` if there are any.
     pub radius: f64,
+    /// Half the width at each vertex of the path, px; empty for a stroke of one width ([`Stroke::varying`]).
+    pub radii: Vec<f64>,
     /// Its ends and corners.
     pub cap: Cap,
     /// sRGB-encoded colour, 0..1.
@@ -123,7 +126,7 @@ impl Scene {
         self.with_marks(|mark| mark.map(held))
     }
 
-    /// The scene with an area in the place of each stroke with square ends, which looks the same.
+    /// The scene with an area in the place of each stroke with square ends or whose width varies, which looks the same.
     #[must_use]
     pub fn filled(self) -> Self {
         self.with_marks(Mark::filled)

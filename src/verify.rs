@@ -352,6 +352,7 @@ mod tests {
         let stroke = |path| Stroke {
             path,
             radius: 3.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.8, 0.2, 0.4],
             opacity: 1.0,

@@ -67,6 +67,7 @@ impl Source<'_> {
         Mark::Stroke(Stroke {
             path,
             radius: radius.into(),
+            radii: Vec::new(),
             cap: if self.byte().is_multiple_of(4) {
                 Cap::Butt
             } else {

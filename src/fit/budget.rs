@@ -123,6 +123,7 @@ pub(super) fn typical_bytes(config: &Config, target: &Image) -> usize {
     let stroke = Stroke {
         path: Path::line(place(2.0 / 3.0, 0.0), place(2.0 / 3.0, 10.0 / 3.0)),
         radius: 5.0 / 3.0,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [1.0 / 3.0; 3].map(|c: f32| c + 0.01),
         opacity: if config.opaque { 1.0 } else { 2.0 / 3.0 },

@@ -120,6 +120,7 @@ fn filled(area: &Area, spacing: f64, pen: f64, degrees: f64) -> Result<Vec<Strok
     let stroke = |path| Stroke {
         path,
         radius,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: area.color,
         opacity: 1.0,

@@ -110,6 +110,7 @@ fn band(rings: &[Path], reach: f64) -> BezPath {
     let stroke = |ring: &Path| Stroke {
         path: ring.clone(),
         radius: reach,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [0.0; 3],
         opacity: 1.0,

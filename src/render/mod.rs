@@ -28,8 +28,8 @@
 //! ];
 //! let path = Path::new(points, false)?;
 //! let cap = Cap::Round;
-//! let hook = Stroke { path, radius: 2.5, cap, color: [0.0; 3], opacity: 0.9 };
-//! let dot = Stroke { path: Path::dot(Point::new(29.0, 5.0)), radius: 4.5, cap, color: [1.0; 3], opacity: 0.6 };
+//! let hook = Stroke { path, radius: 2.5, radii: Vec::new(), cap, color: [0.0; 3], opacity: 0.9 };
+//! let dot = Stroke { path: Path::dot(Point::new(29.0, 5.0)), radius: 4.5, radii: Vec::new(), cap, color: [1.0; 3], opacity: 0.6 };
 //! let strokes = Strokes::from_iter([&hook, &dot]);
 //!
 //! let grid = Grid::new(48, 24);

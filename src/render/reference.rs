@@ -393,6 +393,7 @@ mod tests {
         scene.stages.push(scene::Stage::from_iter([scene::Stroke {
             path: scene::Path::dot(Point::new(0.5, 0.5)),
             radius: 5.0,
+            radii: Vec::new(),
             cap: scene::Cap::Round,
             color: [1.0, 0.0, 0.0],
             opacity: 0.5,

@@ -129,6 +129,7 @@ mod tests {
         let stroke = Stroke {
             path: Path::line((1.5, 2.0).into(), (3.0, 4.0).into()),
             radius: 0.75,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [1.0, 0.5, 0.0],
             opacity: 0.25,

@@ -276,6 +276,7 @@ mod tests {
         let stroke = Stroke {
             path,
             radius: 0.5 * width,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.0; 3],
             opacity: 1.0,

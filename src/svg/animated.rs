@@ -58,6 +58,11 @@ pub fn write_animated(
             marks += 1;
         }
         match shapes.next_if(|_| is_mark(line)) {
+            Some(mark) if mark.is_varying() => {
+                if let Mark::Area(area) = mark.clone().filled() {
+                    groups.push(&clock.fading(line, &area, part));
+                }
+            }
             Some(Mark::Stroke(stroke)) if is_long(stroke) => {
                 groups.push(&clock.along(line, part));
             }
@@ -188,6 +193,7 @@ mod tests {
         Stroke {
             path: Path::line((k as f32, 2.0).into(), (k as f32 + 3.0, 8.0).into()),
             radius: 1.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [k as f32 / 7.0, 0.5, 0.2],
             opacity: 0.8,

@@ -82,7 +82,7 @@
 //! use strokefit::svg::{self, WriteOptions};
 //!
 //! let path = Path::line((1.25, 2.0).into(), (30.0, 4.0).into());
-//! let stroke = Stroke { path, radius: 1.5, cap: Cap::Round, color: [1.0, 0.4, 0.0], opacity: 0.5 };
+//! let stroke = Stroke { path, radius: 1.5, radii: Vec::new(), cap: Cap::Round, color: [1.0, 0.4, 0.0], opacity: 0.5 };
 //! let page = Scene::empty(40, 10, Some([1.0; 3]));
 //! let scene = Scene { stages: vec![Stage::from_iter([stroke])], ..page };
 //!
@@ -109,6 +109,7 @@ mod path;
 mod read;
 mod shape;
 mod sheet;
+mod sweep;
 mod tour;
 mod travel;
 mod write;

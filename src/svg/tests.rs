@@ -117,7 +117,7 @@ proptest! {
     fn the_bytes_of_a_mark_are_what_the_file_grows_by(mark in mark(), precision in 0..=6_u8) {
         let options = WriteOptions { form: Form::Plain, ..precise(precision) };
         // Bands have attributes of their own beside a stroke with round ends.
-        let dot = Mark::from(Stroke { path: Path::dot((3.0, 3.0).into()), radius: 2.0, cap: Cap::Round, color: [0.0; 3], opacity: 1.0 });
+        let dot = Mark::from(Stroke { path: Path::dot((3.0, 3.0).into()), radius: 2.0, radii: Vec::new(), cap: Cap::Round, color: [0.0; 3], opacity: 1.0 });
         let bytes = |count: usize| {
             let marks = std::iter::once(dot.clone()).chain(vec![mark.clone(); count]);
             let scene = Scene { stages: vec![marks.collect()], ..Scene::empty(1_000_000, 9, None) };
@@ -183,6 +183,7 @@ fn line() -> Stroke {
     Stroke {
         path: Path::line(Point::new(100.25, 20.5), Point::new(97.04, 25.06)),
         radius: 1.5,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [1.0, 0.4, 0.0],
         opacity: 1.0,
@@ -498,6 +499,7 @@ fn in_classes() -> String {
         Mark::from(Stroke {
             path,
             radius,
+            radii: Vec::new(),
             cap: Cap::Round,
             color,
             opacity,

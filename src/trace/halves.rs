@@ -386,6 +386,7 @@ mod tests {
         let pale = Stroke {
             path: Path::line(from, to),
             radius: 1.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.4; 3],
             opacity: 1.0,

@@ -131,6 +131,7 @@ fn stroke(
     let stroke = Stroke {
         path,
         radius: radius.into(),
+        radii: Vec::new(),
         cap: Cap::Round,
         color,
         opacity,

@@ -139,6 +139,7 @@ fn capsule(a: [f32; 2], b: [f32; 2], width: f32) -> Stroke {
     Stroke {
         path,
         radius: f64::from(width) / 2.0,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [0.1, 0.3, 0.8],
         opacity: 1.0,

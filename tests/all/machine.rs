@@ -388,6 +388,7 @@ fn arcs_of_a_dxf_go_where_the_paths_go() {
         let stroke = |path| Stroke {
             path,
             radius: 1.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.0; 3],
             opacity: 1.0,
@@ -439,6 +440,7 @@ fn arcs_of_a_dxf_are_within_a_hundredth_of_a_millimetre_of_cubic_curves() {
     let stroke = Stroke {
         path: path.clone(),
         radius: 1.0,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [0.0; 3],
         opacity: 1.0,
@@ -494,6 +496,7 @@ fn of_curves_and_arcs() -> Scene {
     let stroke = |points: &[_], cap| Stroke {
         path: of_letters(points, false),
         radius: 5.0,
+        radii: Vec::new(),
         cap,
         color: [0.1, 0.4, 0.8],
         opacity: 1.0,

@@ -17,6 +17,7 @@ fn picture(points: &[(f64, f64)], closed: bool) -> Image {
     drawn(Stroke {
         path: Path::new(points.collect(), closed).unwrap(),
         radius: 3.5,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [0.1, 0.2, 0.5],
         opacity: 1.0,

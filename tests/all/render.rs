@@ -159,6 +159,7 @@ fn along_paths() -> Vec<Case> {
         let stroke = Stroke {
             path,
             radius: [1.3, 4.2, 0.4][k % 3],
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.9, 0.2, 0.1],
             opacity: [0.6, 1.0][k % 2],
@@ -184,6 +185,7 @@ fn push_area(
         rings: &rings.ends,
         form: None,
         paint,
+        sweep: None,
         style: &[0.0, red, green, blue, opacity],
     });
 }
@@ -273,6 +275,7 @@ fn long(radius: f32, opacity: f32) -> Case {
     let stroke = Stroke {
         path: Path::new(walk.collect(), false).unwrap(),
         radius: radius.into(),
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [0.2, 0.9, 0.4],
         opacity,
@@ -300,6 +303,7 @@ fn along_borders() -> Case {
     let stroke = Stroke {
         path: Path::new(points.to_vec(), false).unwrap(),
         radius: 1.1,
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [0.7, 0.1, 0.4],
         opacity: 0.7,
@@ -337,6 +341,7 @@ fn random_paths(seed: u64, width: usize, height: usize, count: usize) -> Case {
         Stroke {
             path,
             radius: capsule.radius().into(),
+            radii: Vec::new(),
             cap: Cap::Round,
             color: capsule.color(),
             opacity: capsule.opacity(),
@@ -721,6 +726,7 @@ fn stroke_text(path: Path, radius: f32) -> String {
     let stroke = Stroke {
         path,
         radius: radius.into(),
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [0.0; 3],
         opacity: 1.0,

@@ -179,6 +179,7 @@ fn levels_off(width: f64, degrees: f64) -> f64 {
         let stroke = Stroke {
             path: Path::line(end(-20.0), end(20.0)),
             radius: width / 2.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.0; 3],
             opacity: 1.0,

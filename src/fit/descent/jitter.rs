@@ -60,6 +60,7 @@ mod tests {
             strokes.push_stroke(&Stroke {
                 path: Path::line(at(0.0), at(4.0)),
                 radius: 1.0,
+                radii: Vec::new(),
                 cap: Cap::Round,
                 color: [0.5; 3],
                 opacity: 0.5,

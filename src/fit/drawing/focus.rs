@@ -202,6 +202,7 @@ mod tests {
         let dot = Stroke {
             path: Path::dot((x, 24.0).into()),
             radius: 6.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.5; 3],
             opacity: 0.8,

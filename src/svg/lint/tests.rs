@@ -157,6 +157,7 @@ fn a_page_of_a_stated_width_is_as_it_was_asked_for() {
         stages: vec![Stage::from_iter([Stroke {
             path: Path::line(Point::new(9.0, 9.0), Point::new(60.0, 30.0)),
             radius: 0.6,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [0.5; 3],
             opacity: 1.0,

@@ -134,6 +134,7 @@ pub(super) fn stroke() -> impl Strategy<Value = Stroke> {
         |(path, radius, cap, r, g, b, opacity)| Stroke {
             path,
             radius,
+            radii: Vec::new(),
             cap,
             color: [r, g, b],
             opacity,
@@ -266,6 +267,7 @@ fn alike() -> impl Strategy<Value = Stroke> {
     (path, look).prop_map(|(path, (color, width, opacity))| Stroke {
         path,
         radius: 1.0 + f64::from(width),
+        radii: Vec::new(),
         cap: Cap::Round,
         color: [f32::from(color), 0.2, 0.6],
         opacity: if opacity == 0 { 0.5 } else { 1.0 },

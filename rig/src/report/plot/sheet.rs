@@ -292,6 +292,7 @@ mod tests {
         let stroke = |i: usize| Stroke {
             path: scene::Path::dot(((i % 12) as f64, (i % 9) as f64).into()),
             radius: 0.8,
+            radii: Vec::new(),
             cap: scene::Cap::Round,
             color: [0.4; 3],
             opacity: 0.5,

@@ -69,7 +69,7 @@ pub(super) fn ties(drawing: &Drawing, inks: &[Rgb]) -> Ties {
 
 /// The opaque stroke of as much ink in the colour that the picture has along its middle.
 fn inked(stroke: &Stroke, picture: &Image) -> Option<Stroke> {
-    if stroke.cap == Cap::Butt || stroke.radius as f32 > THIN {
+    if stroke.cap == Cap::Butt || stroke.is_varying() || stroke.radius as f32 > THIN {
         return None;
     }
     let (middle, sides) = seen_along(stroke, picture);
@@ -168,6 +168,7 @@ mod tests {
         let stroke = Stroke {
             path: Path::new(vec![at(2.0), at(30.0)], false).unwrap(),
             radius,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [level; 3],
             opacity: 1.0,

@@ -121,6 +121,7 @@ mod tests {
         let stroke = Stroke {
             path: Path::line(Point::new(x, 10.0), Point::new(x, 50.0)),
             radius: 4.0,
+            radii: Vec::new(),
             cap: Cap::Round,
             color: [level; 3],
             opacity: 1.0,
