@@ -19,7 +19,7 @@ pub(super) struct Anatomy {
     pub(super) parameters: usize,
     /// All of them.
     pub(super) numbers: usize,
-    /// Those of shapes and of the widths of strokes.
+    /// Those of shapes and of the widths of strokes; of the outline of a line whose width varies, those of that line and its widths.
     pub(super) line_numbers: usize,
     /// True if a rectangle fills the page behind everything else.
     pub(super) has_page: bool,
@@ -46,14 +46,17 @@ impl Anatomy {
         };
         for (_, &node) in counted {
             anatomy.parameters += parameters(node);
+            let line = line_numbers(node);
             for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
                 let name = attribute.name();
                 let count = numbers(node.tag_name().name(), name, attribute.value());
                 anatomy.numbers += count;
-                if name == "stroke-width" || is_shape(node) && GEOMETRY.contains(&name) {
+                let is_own = is_shape(node) && GEOMETRY.contains(&name) && line.is_none();
+                if name == "stroke-width" || is_own {
                     anatomy.line_numbers += count;
                 }
             }
+            anatomy.line_numbers += line.unwrap_or_default();
         }
         Ok(anatomy)
     }
@@ -228,6 +231,15 @@ fn parameters(node: Node<'_, '_>) -> usize {
     }
 }
 
+/// The namespace of the attributes with which we write the line that a path is the outline of.
+const LINE: &str = "urn:strokefit:line";
+
+/// Numbers of the line that a node is the outline of, and of its widths.
+fn line_numbers(node: Node<'_, '_>) -> Option<usize> {
+    let [data, widths] = ["line", "widths"].map(|name| node.attribute((LINE, name)));
+    Some(segments(data?).map(written).sum::<usize>() + listed(widths?))
+}
+
 /// The segments before the first error, which are all that is drawn.
 fn segments(data: &str) -> impl Iterator<Item = PathSegment> + '_ {
     PathParser::from(data).map_while(|segment| segment.ok())
@@ -352,6 +364,25 @@ mod tests {
             <g fill="none" stroke="#102030" style="stroke-width:2px; fill-opacity:.5"><path fill="url(#a)" d="M0 0h1"/></g>"##,
         );
         assert_eq!((parameters, numbers), (2, 8 + 4 + 1 + 3 + 2 + 3));
+    }
+
+    #[test]
+    fn an_outline_counts_as_its_line() {
+        let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" xmlns:strokefit="urn:strokefit:line"><g stroke-width="3"><path fill="#102030" d="M1 2h9v9z" strokefit:line="M1 2Q3 4 5 6" strokefit:widths="1 2.5"/><circle r="2"/></g></svg>"##;
+        assert_eq!(Anatomy::of(svg).unwrap().line_numbers, 1 + (2 + 4 + 2) + 1);
+    }
+
+    #[test]
+    fn shapes_are_alone_in_their_groups() {
+        let page = r#"<rect width="8" height="8"/>"#;
+        let svg = format!(
+            r#"<svg width="8" height="8"><g>{page}<path d="M0 0"/> <g fill="red"><path d="M1 1"/></g></g></svg>"#
+        );
+        let expected = [
+            r#"<svg width="8" height="8"><g><path d="M0 0"/> <g fill="red"></g></g></svg>"#,
+            r#"<svg width="8" height="8"><g> <g fill="red"><path d="M1 1"/></g></g></svg>"#,
+        ];
+        assert_eq!(each_alone(&svg).unwrap(), expected);
     }
 
     #[test]

@@ -12,7 +12,8 @@ use crate::report::ink::Found;
 use crate::report::statistics::{mean, quantile};
 use strokefit::Result;
 use strokefit::image::Image;
-use strokefit::scene::{Mark, Stroke};
+use strokefit::math::Point;
+use strokefit::scene::{Mark, Path, PathPoint, PointKind, Stroke};
 use strokefit::svg;
 use strokefit::verify::Size;
 
@@ -140,12 +141,73 @@ const COLORS: [[u8; 3]; 7] = [
     [0, 0, 0],
 ];
 
-/// The centre line of a stroke, with half its width.
+/// The centre line of a stroke, with half its width: linear along each piece of the path, and along all curves between two vertices.
 fn centre_line(stroke: &Stroke) -> Line {
-    let points = stroke.path.flattened(TOLERANCE_PX).into_iter();
-    Line {
-        samples: points.map(|p| [p.x, p.y, stroke.radius]).collect(),
+    let mut points = stroke.path.points().to_vec();
+    let first = points.iter().position(PathPoint::is_on);
+    if stroke.path.is_closed() {
+        points.rotate_left(first.unwrap_or_default());
+        points.push(points[0]);
     }
+    let vertices: Vec<usize> = (0..points.len()).filter(|i| points[*i].is_on()).collect();
+    let radius = |vertex: usize| match stroke.radii.len() {
+        0 => stroke.radius,
+        count => stroke.radii[vertex % count],
+    };
+    let mut samples = Vec::new();
+    for (vertex, ends) in vertices.windows(2).enumerate() {
+        let pieces = pieces(&points[ends[0]..=ends[1]]);
+        let at = |share: f64| radius(vertex) + share * (radius(vertex + 1) - radius(vertex));
+        for (i, piece) in pieces.iter().enumerate() {
+            let [from, to] = [i, i + 1].map(|k| at(k as f64 / pieces.len() as f64));
+            samples.extend(with_radii(&piece.flattened(TOLERANCE_PX), [from, to]));
+        }
+    }
+    if samples.is_empty() {
+        let points = stroke.path.flattened(TOLERANCE_PX);
+        samples = with_radii(&points, [radius(0); 2]);
+    }
+    Line { samples }
+}
+
+/// The lines, curves and arcs from one vertex of a path to the next, each as a path.
+fn pieces(run: &[PathPoint]) -> Vec<Path> {
+    let [start, between @ .., end] = run else {
+        return Vec::new();
+    };
+    let is_quad = between.iter().all(|p| p.kind == PointKind::Quad);
+    let path = |points: Vec<PathPoint>| Path::new(points, false).ok();
+    if between.is_empty() || !is_quad {
+        return path(run.to_vec()).into_iter().collect();
+    }
+    // Curves meet halfway between their control points.
+    let middles = between.windows(2).map(|p| p[0].at.midpoint(p[1].at));
+    let joints: Vec<PathPoint> = [start.at]
+        .into_iter()
+        .chain(middles)
+        .chain([end.at])
+        .map(PathPoint::on)
+        .collect();
+    let curves = joints.windows(2).zip(between);
+    curves
+        .filter_map(|(ends, off)| path(vec![ends[0], *off, ends[1]]))
+        .collect()
+}
+
+/// Points with a radius that changes evenly along them.
+fn with_radii(points: &[Point], [from, to]: [f64; 2]) -> Vec<[f64; 3]> {
+    let lengths = points.windows(2).map(|w| w[0].distance(w[1]));
+    let ends = lengths.scan(0.0, |sum, length| {
+        *sum += length;
+        Some(*sum)
+    });
+    let along: Vec<f64> = [0.0].into_iter().chain(ends).collect();
+    let whole = along.last().copied().unwrap_or_default();
+    let share = |at: f64| at / whole.max(f64::MIN_POSITIVE);
+    let points = points.iter().zip(along);
+    points
+        .map(|(p, at)| [p.x, p.y, from + share(at) * (to - from)])
+        .collect()
 }
 
 impl<'a> Truth<'a> {
@@ -282,6 +344,31 @@ mod tests {
             let united = outlined(&lines, size).replace(r#""/><path d=""#, "");
             let united = truth.found(&Elements::of(&united, size).unwrap());
             assert_eq!((united.whole, united.elements), (0, 1), "{}", kind.name);
+        }
+    }
+
+    #[test]
+    fn a_centre_line_has_the_widths_of_its_stroke() {
+        let points = [[0.0, 0.0], [4.0, 0.0], [8.0, 0.0], [12.0, 0.0], [14.0, 0.0]];
+        let points = points.map(|[x, y]| Point::new(x, y));
+        let mut points = points.map(PathPoint::on);
+        points[1].kind = PointKind::Quad;
+        points[2].kind = PointKind::Quad;
+        let path = Path::new(points.to_vec(), false).unwrap();
+        let stroke = Stroke::varying(path, vec![1.0, 5.0, 3.0], [0.0; 3], 1.0).unwrap();
+        let centre = centre_line(&stroke);
+        for [at, radius] in [
+            [0.0, 1.0],
+            [6.0, 3.0],
+            [12.0, 5.0],
+            [13.0, 4.0],
+            [14.0, 3.0],
+        ] {
+            let [off, found] = nearest(&centre, [at, 1.0, 0.0]);
+            assert!(
+                (off - 1.0).abs() < 1e-9 && (found - radius).abs() < 1e-9,
+                "{at} {found}"
+            );
         }
     }
 
