@@ -126,7 +126,7 @@ impl Scene {
         self.with_marks(|mark| mark.map(held))
     }
 
-    /// The scene with an area in the place of each stroke with square ends, which looks the same.
+    /// The scene with an area in the place of each stroke with square ends or whose width varies, which looks the same.
     #[must_use]
     pub fn filled(self) -> Self {
         self.with_marks(Mark::filled)

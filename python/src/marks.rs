@@ -62,6 +62,7 @@ impl PackedMarks {
                 rings: row.rings,
                 form: None,
                 paint: None,
+                sweep: None,
                 style: &row.style,
             });
         })?;

@@ -573,6 +573,7 @@ mod tests {
                 rings: &[],
                 form: None,
                 paint: None,
+                sweep: None,
                 style: &[1.0, 1.0, 1.0, 1.0, [0.2, 0.6, 1.0][strokes.len() % 3]],
             });
         };
@@ -678,6 +679,7 @@ mod tests {
                 rings: &[],
                 form: None,
                 paint: None,
+                sweep: None,
                 style: &[1.0, 1.0, 1.0, 1.0, opacity],
             };
             let mut curves = Vec::new();

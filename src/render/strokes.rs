@@ -70,6 +70,8 @@ pub struct Strokes {
     rings: Vec<u32>,
     /// The gradients of the areas that have one.
     paints: Vec<Paint>,
+    /// The lines of the areas that are the outline of one whose width varies.
+    sweeps: Vec<Sweep>,
     outlines: Vec<Outline>,
 }
 
@@ -82,8 +84,53 @@ struct Outline {
     rings_end: u32,
     /// The index after its paint, or after the last one before it.
     paints_end: u32,
+    /// The index after its line, or after the last one before it.
+    sweeps_end: u32,
     closed: bool,
     form: Option<Form>,
+}
+
+/// The line and the radii, px, of a stroke whose width varies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sweep {
+    points: Vec<[f64; 2]>,
+    kinds: Vec<PointKind>,
+    closed: bool,
+    radii: Vec<f64>,
+}
+
+impl Sweep {
+    fn of(stroke: &Stroke) -> Self {
+        let points = stroke.path.points();
+        Self {
+            points: points.iter().map(|p| [p.at.x, p.at.y]).collect(),
+            kinds: points.iter().map(|p| p.kind).collect(),
+            closed: stroke.path.is_closed(),
+            radii: stroke.radii.clone(),
+        }
+    }
+
+    /// Multiplies all lengths.
+    pub fn scale(&mut self, factor: f64) {
+        let lengths = self.points.as_flattened_mut().iter_mut();
+        lengths.chain(&mut self.radii).for_each(|l| *l *= factor);
+    }
+
+    fn stroke(&self, color: Rgb, opacity: f32) -> Stroke {
+        let points = self.points.iter().zip(&self.kinds);
+        let points = points.map(|(&at, &kind)| PathPoint {
+            at: (at[0], at[1]).into(),
+            kind,
+        });
+        Stroke {
+            path: Path::of_points(points.collect(), self.closed),
+            radius: self.radii.iter().copied().fold(0.0, f64::max),
+            radii: self.radii.clone(),
+            cap: Cap::Round,
+            color,
+            opacity,
+        }
+    }
 }
 
 /// Numbers that all points of a mark follow from, where they are no path like any other.
@@ -93,6 +140,8 @@ pub enum Form {
     Shape(ShapeKind),
     /// The line and the width of a stroke with square ends, whose outline is rings to be filled.
     Band,
+    /// The line and the radii of a stroke whose width varies. Its outline is rings to be filled, which stay as they are.
+    Sweep,
 }
 
 /// One of [`Strokes`].
@@ -112,6 +161,8 @@ pub struct StrokeRef<'a> {
     pub style: &'a [f32; STYLE],
     /// The gradient that an area is filled with instead of its colour.
     pub paint: Option<&'a Paint>,
+    /// The line whose outline its points are, if its form says so.
+    pub sweep: Option<&'a Sweep>,
 }
 
 /// One of [`Strokes`], to be changed.
@@ -125,6 +176,8 @@ pub struct StrokeMut<'a> {
     pub is_area: bool,
     /// The gradient that an area is filled with instead of its colour.
     pub paint: Option<&'a mut Paint>,
+    /// The line whose outline the points are, if its form says so. They stay where they are.
+    pub sweep: Option<&'a mut Sweep>,
 }
 
 impl<'a> StrokeRef<'a> {
@@ -225,6 +278,9 @@ impl<'a> StrokeRef<'a> {
             };
             return stroke.into();
         }
+        if let Some(sweep) = self.sweep.filter(|_| self.form == Some(Form::Sweep)) {
+            return sweep.stroke(self.color(), self.opacity()).into();
+        }
         let rings = self.paths().map(|(_, ring)| ring.to_path()).collect();
         let area = Area {
             shade: self.paint.map(|paint| paint.shade.clone()),
@@ -321,6 +377,12 @@ impl Strokes {
             .map_or(0, |before| self.outlines[before].paints_end as usize)
     }
 
+    /// The index of the line of stroke `i` among those whose width varies, or of the next one.
+    fn first_sweep(&self, i: usize) -> usize {
+        i.checked_sub(1)
+            .map_or(0, |before| self.outlines[before].sweeps_end as usize)
+    }
+
     /// Where the numbers of stroke `i` are.
     pub fn range(&self, i: usize) -> std::ops::Range<usize> {
         // Two numbers for each point and a style for each stroke before it.
@@ -337,6 +399,7 @@ impl Strokes {
             end,
             rings_end,
             paints_end,
+            sweeps_end,
             closed,
             form,
         } = self.outlines[i];
@@ -351,6 +414,7 @@ impl Strokes {
             form,
             style,
             paint: self.paints[self.first_paint(i)..paints_end as usize].first(),
+            sweep: self.sweeps[self.first_sweep(i)..sweeps_end as usize].first(),
         }
     }
 
@@ -360,6 +424,7 @@ impl Strokes {
             let range = self.range(i);
             let is_area = self.first_ring(i) < self.outlines[i].rings_end as usize;
             let paint = self.first_paint(i)..self.outlines[i].paints_end as usize;
+            let sweep = self.first_sweep(i)..self.outlines[i].sweeps_end as usize;
             if let Some((points, style)) = self.numbers[range].split_last_chunk_mut() {
                 let points = points.as_chunks_mut().0;
                 let stroke = StrokeMut {
@@ -367,6 +432,7 @@ impl Strokes {
                     style,
                     is_area,
                     paint: self.paints[paint].first_mut(),
+                    sweep: self.sweeps[sweep].first_mut(),
                 };
                 change(i, stroke);
             }
@@ -393,10 +459,14 @@ impl Strokes {
         self.kinds.extend(stroke.kinds);
         self.rings.extend(stroke.rings);
         self.paints.extend(stroke.paint.cloned());
+        // Points of another form are no outline of the line any more.
+        let sweep = stroke.sweep.filter(|_| stroke.form == Some(Form::Sweep));
+        self.sweeps.extend(sweep.cloned());
         self.outlines.push(Outline {
             end: self.kinds.len() as u32,
             rings_end: self.rings.len() as u32,
             paints_end: self.paints.len() as u32,
+            sweeps_end: self.sweeps.len() as u32,
             closed: stroke.closed,
             form: stroke.form,
         });
@@ -413,6 +483,7 @@ impl Strokes {
                 form: None,
                 style,
                 paint: None,
+                sweep: None,
             });
         }
     }
@@ -429,18 +500,24 @@ impl Strokes {
             // The kernel's capsules have round ends, so a stroke with square ends becomes the area within its outline.
             Mark::Stroke(stroke) if stroke.cap == Cap::Butt => {
                 if let Mark::Area(rings) = mark.clone().filled() {
-                    self.push_area(&rings, Some(Form::Band));
+                    self.push_area(&rings, Some(Form::Band), None);
+                }
+            }
+            Mark::Stroke(stroke) if stroke.is_varying() => {
+                if let Mark::Area(rings) = mark.clone().filled() {
+                    let sweep = Sweep::of(stroke);
+                    self.push_area(&rings, Some(Form::Sweep), Some(&sweep));
                 }
             }
             Mark::Stroke(stroke) => {
                 let style = (stroke.radius as f32, stroke.color, stroke.opacity);
-                self.push_paths(mark.paths(), &[], form, style, None);
+                self.push_paths(mark.paths(), &[], form, style, (None, None));
             }
-            Mark::Area(area) => self.push_area(area, form),
+            Mark::Area(area) => self.push_area(area, form, None),
         }
     }
 
-    fn push_area(&mut self, area: &Area, form: Option<Form>) {
+    fn push_area(&mut self, area: &Area, form: Option<Form>, sweep: Option<&Sweep>) {
         // All rings share one list of points, so a ring is the index behind its last point.
         let ends = area.rings.iter().scan(0, |end, ring| {
             *end += ring.points().len() as u32;
@@ -449,7 +526,8 @@ impl Strokes {
         let ends: Vec<u32> = ends.collect();
         let paint = area.shade.clone().map(|shade| Paint { shade, scale: 1.0 });
         let style = (0.0, area.color, area.opacity);
-        self.push_paths(&area.rings, &ends, form, style, paint.as_ref());
+        let rest = (paint.as_ref(), sweep);
+        self.push_paths(&area.rings, &ends, form, style, rest);
     }
 
     fn push_paths(
@@ -458,7 +536,7 @@ impl Strokes {
         rings: &[u32],
         form: Option<Form>,
         (radius, [red, green, blue], opacity): (f32, Rgb, f32),
-        paint: Option<&Paint>,
+        (paint, sweep): (Option<&Paint>, Option<&Sweep>),
     ) {
         let points = || paths.iter().flat_map(Path::points);
         let places: Vec<[f32; 2]> = points().map(|p| math::xy(p.at)).collect();
@@ -471,23 +549,26 @@ impl Strokes {
             form,
             style: &[radius, red, green, blue, opacity],
             paint,
+            sweep,
         });
     }
 
     /// Adds all of `others` on top, and leaves none there.
     pub fn append(&mut self, others: &mut Self) {
         let (points, rings) = (self.kinds.len() as u32, self.rings.len() as u32);
-        let paints = self.paints.len() as u32;
+        let (paints, sweeps) = (self.paints.len() as u32, self.sweeps.len() as u32);
         self.numbers.append(&mut others.numbers);
         self.kinds.append(&mut others.kinds);
         self.rings.append(&mut others.rings);
         self.paints.append(&mut others.paints);
+        self.sweeps.append(&mut others.sweeps);
         // Indices of `others` count from their own start.
         let outlines = others.outlines.drain(..);
         self.outlines.extend(outlines.map(|outline| Outline {
             end: outline.end + points,
             rings_end: outline.rings_end + rings,
             paints_end: outline.paints_end + paints,
+            sweeps_end: outline.sweeps_end + sweeps,
             ..outline
         }));
     }
@@ -497,7 +578,7 @@ impl Strokes {
     pub fn split_off(&mut self, at: usize) -> Self {
         let at = at.min(self.len());
         let (first, first_ring) = (self.first_point(at), self.first_ring(at));
-        let first_paint = self.first_paint(at);
+        let (first_paint, first_sweep) = (self.first_paint(at), self.first_sweep(at));
         // The indices of the part split off have to count from its own start.
         let outlines = self.outlines.split_off(at).into_iter();
         Self {
@@ -505,11 +586,13 @@ impl Strokes {
             kinds: self.kinds.split_off(first),
             rings: self.rings.split_off(first_ring),
             paints: self.paints.split_off(first_paint),
+            sweeps: self.sweeps.split_off(first_sweep),
             outlines: outlines
                 .map(|outline| Outline {
                     end: outline.end - first as u32,
                     rings_end: outline.rings_end - first_ring as u32,
                     paints_end: outline.paints_end - first_paint as u32,
+                    sweeps_end: outline.sweeps_end - first_sweep as u32,
                     ..outline
                 })
                 .collect(),

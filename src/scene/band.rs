@@ -262,11 +262,17 @@ impl Stroke {
 }
 
 impl Mark {
-    /// This mark, as the area that looks like it if it is a stroke with square ends.
+    /// This mark, as the area that looks like it if it is a stroke with square ends or one whose width varies.
     #[must_use]
     pub fn filled(self) -> Self {
-        match self.as_stroke().and_then(Stroke::band) {
-            Some(band) => Area::plain(band.rings(), self.color(), self.opacity()).into(),
+        let rings = self
+            .as_stroke()
+            .and_then(|stroke| match stroke.is_varying() {
+                true => Some(stroke.swept()),
+                false => Some(stroke.band()?.rings()),
+            });
+        match rings {
+            Some(rings) => Area::plain(rings, self.color(), self.opacity()).into(),
             None => self,
         }
     }

@@ -101,7 +101,7 @@ impl Mark {
         paths.flat_map(|path| path.lines(tolerance)).collect()
     }
 
-    /// Half the width of a stroke, px; 0 for an area.
+    /// Half the width of a stroke, px, the largest one if it varies; 0 for an area.
     pub fn radius(&self) -> f64 {
         match self {
             Self::Stroke(stroke) => stroke.radius,
@@ -131,6 +131,11 @@ impl Mark {
     pub fn is_butt(&self) -> bool {
         self.as_stroke()
             .is_some_and(|stroke| stroke.cap == Cap::Butt)
+    }
+
+    /// True if it is a stroke whose width varies.
+    pub fn is_varying(&self) -> bool {
+        self.as_stroke().is_some_and(Stroke::is_varying)
     }
 
     /// The gradient of an area that has one.
@@ -175,6 +180,9 @@ impl Mark {
         let [red, green, blue] = self.color();
         points.all(|p| p.at.is_finite())
             && self.radius().is_finite()
+            && self
+                .as_stroke()
+                .is_none_or(|stroke| stroke.radii.iter().all(|r| r.is_finite()))
             && [red, green, blue, self.opacity()]
                 .iter()
                 .all(|v| v.is_finite())

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use kurbo::Rect;
 
-use super::grid::{Grid, MAX_COORDINATE, MIN_WIDTH, color, quantum};
+use super::grid::{Grid, MAX_COORDINATE, MAX_PRECISION, MIN_WIDTH, color, quantum};
 use super::path::bounds;
-use super::{Area, Cap, Mark, Path, Rgb, Scene, Shade, Shape, Stroke};
+use super::{Area, Cap, Mark, Path, PathPoint, Rgb, Scene, Shade, Shape, Stroke};
 use crate::math::Point;
 
 /// A scene rounded to the numbers that its SVG holds, with counts of the marks that were dropped.
@@ -68,7 +68,8 @@ impl Scene {
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
     /// opacities become multiples of 1/255; a path shorter than the precision becomes a dot; a closed path that its pen
     /// fills becomes an open one that ends where it starts; rings without an inside go; a stroke with square ends that SVG
-    /// would draw otherwise becomes an area; cubic curves of strokes that bend more tightly than
+    /// would draw otherwise becomes an area; one whose width varies has a radius of 0 at its ends alone, and is like any other once all
+    /// of its widths are equal; cubic curves of strokes that bend more tightly than
     /// their pen become quadratic ones. Off-points are
     /// rounded so that the file also holds the on-points that they imply.
     /// [`Dropped`] counts what is left out. Stages without marks are left out as well.
@@ -146,6 +147,11 @@ fn rounded(mark: &Mark, precision: u8) -> Result<Mark, Unwritable> {
     // Refuse first: rounding needs finite numbers within the range where decimals are exact.
     check(mark)?;
     let grid = Grid::new(precision);
+    if let Mark::Stroke(stroke) = mark
+        && stroke.is_varying()
+    {
+        return sweep(stroke, &grid).map(Mark::from);
+    }
     // A stroke with square ends stays one if SVG draws it alike; otherwise its outline is written as an area.
     if let Some(band) = mark.as_stroke().and_then(|stroke| band(stroke, &grid)) {
         return Ok(band.into());
@@ -176,6 +182,134 @@ fn round(stroke: &Stroke, grid: &Grid) -> Stroke {
         color: quantized_color(stroke.color),
         opacity: quantized_opacity(stroke.opacity),
     }
+}
+
+/// A rounded stroke whose width varies, or of one width if it has become that.
+fn sweep(stroke: &Stroke, grid: &Grid) -> Result<Stroke, Unwritable> {
+    let (path, radii) = stroke.rounded_line(grid);
+    let last = radii.len().wrapping_sub(1);
+    let width = |(i, radius): (usize, f64)| {
+        // A line may have a tip, but no gap.
+        let is_end = !path.is_closed() && [0, last].contains(&i);
+        let least = if is_end { 0.0 } else { grid.step() };
+        grid.round(2.0 * radius).max(least)
+    };
+    let widths: Vec<f64> = radii.into_iter().enumerate().map(width).collect();
+    let most = widths.iter().copied().fold(0.0, f64::max);
+    let plain = Stroke {
+        path,
+        radius: 0.5 * most,
+        radii: Vec::new(),
+        color: quantized_color(stroke.color),
+        opacity: quantized_opacity(stroke.opacity),
+        ..*stroke
+    };
+    let is_even = widths.iter().all(|width| *width == most) && most >= MIN_WIDTH;
+    if is_even || plain.path.points().len() == 1 {
+        return Ok(round(&plain, grid));
+    }
+    let rounded = Stroke {
+        radii: widths.iter().map(|width| 0.5 * width).collect(),
+        ..plain
+    };
+    match rounded.outline(grid).is_empty() {
+        true => Err(Unwritable::Invisible),
+        false => Ok(rounded),
+    }
+}
+
+impl Stroke {
+    /// The rings that a file with `precision` decimals has for a rounded stroke whose width varies; none for any other.
+    pub(crate) fn written_outline(&self, precision: u8) -> Vec<Path> {
+        match self.is_varying() {
+            true => self.outline(&Grid::new(precision)),
+            false => Vec::new(),
+        }
+    }
+
+    /// True if a file has these rings for it with any number of decimals.
+    pub(crate) fn has_outline(&self, rings: &[Path]) -> bool {
+        let outline = self.swept();
+        (0..=MAX_PRECISION).any(|precision| on_grid(&outline, &Grid::new(precision)) == rings)
+    }
+
+    fn outline(&self, grid: &Grid) -> Vec<Path> {
+        on_grid(&self.swept(), grid)
+    }
+
+    /// The rounded path of a stroke whose width varies, and the radius at each of its vertices.
+    fn rounded_line(&self, grid: &Grid) -> (Path, Vec<f64>) {
+        let is_on = |p: &&PathPoint| p.is_on();
+        let mut points = self.path.points().to_vec();
+        let first = points.iter().position(PathPoint::is_on).unwrap_or(0);
+        // 1. Round. A vertex halfway between two control points would be implied and lose its radius: it moves by a step.
+        let (path, vertices) = loop {
+            let given = Path::of_points(points.clone(), self.path.is_closed());
+            let path = given.rounded(grid);
+            let is_kept = |at: Point| path.points().iter().filter(is_on).any(|p| p.at == at);
+            let count = points.len();
+            let lost = (0..count).find(|&i| {
+                let around = [i + count - 1, i + 1].map(|k| points[k % count]);
+                points[i].is_on()
+                    && around.iter().all(PathPoint::is_quad)
+                    && !is_kept(grid.point(points[i].at))
+            });
+            match lost {
+                Some(i) => points[i].at.x = grid.point(points[i].at).x + grid.step(),
+                None => {
+                    points.rotate_left(first);
+                    let vertices = points.iter().filter(is_on).map(|p| grid.point(p.at));
+                    break (path, vertices.collect::<Vec<Point>>());
+                }
+            }
+        };
+        // 2. Each vertex of the rounded path has the largest radius of those that it was, or else one between its neighbours'.
+        let mut given = vertices
+            .into_iter()
+            .zip(self.radii.iter().copied())
+            .peekable();
+        let mut radii: Vec<Option<f64>> = Vec::new();
+        let places: Vec<Point> = path.points().iter().filter(is_on).map(|p| p.at).collect();
+        for (i, at) in places.iter().enumerate() {
+            let mut own = None;
+            while let Some((_, radius)) = given.next_if(|(place, _)| place == at) {
+                own = Some(radius.max(own.unwrap_or(0.0)));
+            }
+            // Those that are not in the path any more are in one place with another one.
+            let is_in = |place: Point| places[i + 1..].contains(&place);
+            if own.is_some() {
+                while given.next_if(|(place, _)| !is_in(*place)).is_some() {}
+            }
+            radii.push(own);
+        }
+        (path, between(&places, &radii))
+    }
+}
+
+/// The radii of places, where those that have none get one between those before and after them, by the lengths to these.
+fn between(places: &[Point], radii: &[Option<f64>]) -> Vec<f64> {
+    let count = radii.len();
+    let first = radii.iter().flatten().next().copied().unwrap_or(0.0);
+    let radius = |i: usize| {
+        let before = (0..=i).rev().find(|&k| radii[k].is_some());
+        let after = (i..count).find(|&k| radii[k].is_some());
+        let length = |from: usize, to: usize| {
+            let steps = (from..to).map(|k| (places[(k + 1) % count] - places[k]).hypot2().sqrt());
+            steps.sum::<f64>()
+        };
+        // A closed path comes back to its first vertex.
+        let (from, to) = (before.unwrap_or(0), after.unwrap_or(count));
+        let [start, end] = [before, after].map(|k| k.and_then(|k| radii[k]).unwrap_or(first));
+        let share = length(from, i) / length(from, to).max(f64::MIN_POSITIVE);
+        (1.0 - share) * start + share * end
+    };
+    (0..count).map(radius).collect()
+}
+
+/// The rounded rings of an area that have an inside.
+fn on_grid(rings: &[Path], grid: &Grid) -> Vec<Path> {
+    let rounded = rings.iter().map(|ring| ring.rounded(grid));
+    rounded.filter(Path::encloses).collect()
 }
 
 /// A rounded stroke with square ends, unless SVG would draw it otherwise.

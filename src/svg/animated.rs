@@ -58,6 +58,11 @@ pub fn write_animated(
             marks += 1;
         }
         match shapes.next_if(|_| is_mark(line)) {
+            Some(mark) if mark.is_varying() => {
+                if let Mark::Area(area) = mark.clone().filled() {
+                    groups.push(&clock.fading(line, &area, part));
+                }
+            }
             Some(Mark::Stroke(stroke)) if is_long(stroke) => {
                 groups.push(&clock.along(line, part));
             }

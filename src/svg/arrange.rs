@@ -20,7 +20,7 @@ pub(super) fn layers(scene: &Scene, options: &WriteOptions) -> Vec<Layer> {
         let marks = stage.marks.iter();
         marks
             .filter_map(|mark| scene.quantized_mark(mark, options.precision))
-            .map(Written::from)
+            .map(|mark| Written::rounded(mark, options.precision))
             .collect()
     };
     let stages = scene.stages.iter().map(written);
@@ -93,7 +93,8 @@ fn orient(mark: &mut Written, unit: Unit) {
     let Mark::Stroke(stroke) = &mut mark.mark else {
         return;
     };
-    if stroke.path.shape().is_some() {
+    // The line of an outline stays as it is, too.
+    if stroke.path.shape().is_some() || stroke.is_varying() {
         return;
     }
     let length = |path: &Path| path::data([path], Kind::Line, unit).len();

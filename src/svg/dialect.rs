@@ -10,6 +10,12 @@ pub(crate) const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 /// The namespace that makes a group a layer in Inkscape.
 pub(super) const INKSCAPE_NAMESPACE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
+/// The namespace of the attributes that say which line an outline belongs to, and how wide it is.
+pub(super) const LINE_NAMESPACE: &str = "urn:strokefit:line";
+/// The attributes: path data, and the full width at each of its vertices.
+pub(super) const LINE: &str = "strokefit:line";
+pub(super) const WIDTHS: &str = "strokefit:widths";
+
 /// The beginnings of the ids of shadows and of their filters, which their numbers follow.
 pub(super) const SHADOW_ID: &str = "shadow";
 pub(super) const BLUR_ID: &str = "blur";

@@ -158,7 +158,8 @@ impl Document {
             return self.text.clone();
         }
         let layers = layers(scene, options, self.stages + 1);
-        let has_fill = options.form == Form::Outlines || scene.areas().next().is_some();
+        let is_filled = |mark: &Mark| mark.is_area() || mark.is_varying();
+        let has_fill = options.form == Form::Outlines || scene.marks().any(is_filled);
         let fill = if has_fill { RESET_FILL } else { "" };
         let has_bands = scene.marks().any(Mark::is_butt);
         let bands = if has_bands { RESET_BANDS } else { "" };

@@ -12,6 +12,7 @@ use super::outline;
 use super::path::{self, Kind};
 use super::shape;
 use super::sheet::Sheet;
+use super::sweep;
 use crate::scene::Path;
 
 /// Names of marks and classes of elements, which forms with an element for each mark have.
@@ -49,7 +50,7 @@ pub(super) fn push(
 ) {
     let has_round = strokes.iter().any(Written::is_round);
     match form {
-        Form::Plain | Form::Css => {
+        Form::Plain | Form::Css | Form::Powerstroke => {
             for (i, stroke) in strokes.iter().enumerate() {
                 let (attributes, shared) = names.of(stroke, i);
                 let alone = std::slice::from_ref(stroke);
@@ -115,7 +116,7 @@ fn width_text(width: i64, unit: Unit) -> String {
 fn usual_width(strokes: &[Written]) -> Option<i64> {
     let mut counts = BTreeMap::<i64, usize>::new();
     for element in split(strokes) {
-        if !element[0].is_area() {
+        if !element[0].is_filled() {
             *counts.entry(element[0].width()).or_default() += 1;
         }
     }
@@ -143,7 +144,7 @@ fn joins(strokes: &[Written], next: &Written) -> bool {
         .last()
         .is_some_and(|last| style_of(last) == style_of(next));
     is_alike
-        && !next.is_area()
+        && !next.is_filled()
         && is_line(next)
         && strokes.iter().all(is_line)
         && (next.opacity() == u8::MAX
@@ -168,7 +169,7 @@ impl Attribute {
 
     /// The attribute as text after a space; nothing if it equals the default.
     fn text(self, mark: &Written, style: Style) -> String {
-        let paint = if mark.is_area() { "fill" } else { "stroke" };
+        let paint = if mark.is_filled() { "fill" } else { "stroke" };
         match self {
             Self::Color if let Some(gradient) = gradient::paint(mark) => {
                 format!(" {paint}=\"{gradient}\"")
@@ -177,7 +178,7 @@ impl Attribute {
                 format!(" {paint}=\"{}\"", dialect::hex(mark.color()))
             }
             Self::Color => format!(" {paint}=\"{}\"", dialect::short_hex(mark.color())),
-            Self::Width if mark.is_area() || style.layer_width() == Some(mark.width()) => {
+            Self::Width if mark.is_filled() || style.layer_width() == Some(mark.width()) => {
                 String::new()
             }
             Self::Width => width_text(mark.width(), style.unit()),
@@ -241,12 +242,13 @@ fn push_path(
     let end = if style.is_full() { "\n" } else { "" };
     for mark in strokes {
         gradient::push_of(out, mark, end);
+        sweep::push_effect(out, mark, end);
     }
     if let Some(shape) = only.and_then(Written::shape) {
         shape::push(out, shape, names, style.unit());
     } else {
         let kind = match only {
-            Some(area) if area.is_area() => Kind::Ring,
+            Some(area) if area.is_filled() => Kind::Ring,
             _ => Kind::Line,
         };
         let paths = strokes.iter().flat_map(Written::paths);
@@ -260,6 +262,9 @@ fn push_path(
             .map_or_else(String::new, |stroke| attribute.text(stroke, style));
     }
     out.push_str(only.filter(|_| style.has_round()).map_or("", ends));
+    if let Some(mark) = only {
+        sweep::push(out, mark, style.unit());
+    }
     out.push_str("/>");
 }
 

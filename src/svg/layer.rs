@@ -8,29 +8,56 @@ pub(super) struct Written {
     pub(super) mark: Mark,
     /// The numbers of its layer and of its gradient in it, from 1; 0 if it has no place in a file yet.
     pub(super) place: [usize; 2],
+    /// The rings of a stroke whose width varies.
+    outline: Vec<Path>,
 }
 
 impl From<Mark> for Written {
     fn from(mark: Mark) -> Self {
-        let place = [0; 2];
-        Self { mark, place }
+        Self {
+            mark,
+            place: [0; 2],
+            outline: Vec::new(),
+        }
     }
 }
 
 impl Written {
-    /// The centre line of a stroke, or the rings of an area; at least one.
+    /// A mark that is rounded to so many decimals.
+    pub(super) fn rounded(mark: Mark, precision: u8) -> Self {
+        let stroke = mark.as_stroke();
+        let outline = stroke.map_or_else(Vec::new, |stroke| stroke.written_outline(precision));
+        Self {
+            outline,
+            ..Self::from(mark)
+        }
+    }
+
+    /// The centre line of a stroke, or the rings of an area or of a stroke whose width varies; at least one.
     pub(super) fn paths(&self) -> &[Path] {
-        self.mark.paths()
+        match &self.outline[..] {
+            [] => self.mark.paths(),
+            rings => rings,
+        }
+    }
+
+    /// The line and the radii of a stroke whose width varies.
+    pub(super) fn line(&self) -> Option<(&Path, &[f64])> {
+        let stroke = self.mark.as_stroke().filter(|stroke| stroke.is_varying())?;
+        Some((&stroke.path, &stroke.radii))
     }
 
     /// The shape of the only path, if it is one.
     pub(super) fn shape(&self) -> Option<Shape> {
-        self.mark.shape()
+        self.mark.shape().filter(|_| self.outline.is_empty())
     }
 
-    /// Width of a stroke in units of 1/[`UNITS_PER_PX`](crate::scene::UNITS_PER_PX) px; 0 for an area.
+    /// Width of a stroke in units of 1/[`UNITS_PER_PX`](crate::scene::UNITS_PER_PX) px; 0 for what is filled.
     pub(super) fn width(&self) -> i64 {
-        units(2.0 * self.mark.radius())
+        match self.is_filled() {
+            true => 0,
+            false => units(2.0 * self.mark.radius()),
+        }
     }
 
     /// 8-bit red, green and blue.
@@ -43,13 +70,14 @@ impl Written {
         quantum(self.mark.opacity())
     }
 
-    pub(super) fn is_area(&self) -> bool {
-        self.mark.is_area()
+    /// True if it is rings with a fill: an area, or a stroke whose width varies.
+    pub(super) fn is_filled(&self) -> bool {
+        self.mark.is_area() || self.mark.is_varying()
     }
 
     /// True if it is a stroke with round ends.
     pub(super) fn is_round(&self) -> bool {
-        !self.is_area() && !self.mark.is_butt()
+        !self.is_filled() && !self.mark.is_butt()
     }
 }
 

@@ -109,6 +109,7 @@ mod path;
 mod read;
 mod shape;
 mod sheet;
+mod sweep;
 mod tour;
 mod travel;
 mod write;

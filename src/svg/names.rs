@@ -8,7 +8,8 @@ use crate::scene::{Shape, units};
 pub(super) fn of_mark(mark: &Written) -> String {
     let kind = match mark.paths() {
         _ if let Some(shape) = mark.shape() => of_shape(shape),
-        _ if mark.is_area() => "area",
+        _ if mark.line().is_some() => "line",
+        _ if mark.is_filled() => "area",
         [path] if path.points().len() == 1 => "dot",
         [path] if path.is_closed() => "loop",
         [path] if path.points().len() == 2 => "line",

@@ -60,7 +60,7 @@ fn layers(things: &[Thing], marks: &[Written]) -> Vec<Layer> {
 
 /// True if two marks have one colour and are both strokes or both areas.
 fn is_alike(a: &Written, b: &Written) -> bool {
-    a.color() == b.color() && a.is_area() == b.is_area()
+    a.color() == b.color() && a.is_filled() == b.is_filled()
 }
 
 /// True if a mark is as large as the page.

@@ -44,7 +44,7 @@ impl WriteOptions {
     pub(super) fn unit(&self) -> Unit {
         match self.form {
             Form::Smallest => Unit::decimal(self.precision),
-            Form::Plain | Form::Css | Form::Outlines => Unit::PX,
+            Form::Plain | Form::Css | Form::Powerstroke | Form::Outlines => Unit::PX,
         }
     }
 }
@@ -78,6 +78,8 @@ pub enum Form {
     ///
     /// Layers that are laid on another SVG are in the plain form, as its own style sheets may have the same classes.
     Css,
+    /// One stroke; lines whose width varies are PowerStrokes, whose middle and widths Inkscape edits
+    Powerstroke,
     /// The filled outline of one stroke, for programs that ignore strokes. It is read back as an area
     #[cfg_attr(feature = "cli", value(skip))]
     Outlines,
@@ -113,7 +115,7 @@ pub enum Order {
     Travel,
 }
 
-words!(Form, "a form": Plain = "plain", Smallest = "smallest", Css = "css", Outlines = "outlines");
+words!(Form, "a form": Plain = "plain", Smallest = "smallest", Css = "css", Powerstroke = "powerstroke", Outlines = "outlines");
 
 words!(Group, "a grouping": Stage = "stage", Color = "color", Object = "object");
 

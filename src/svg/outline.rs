@@ -20,7 +20,7 @@ pub(super) fn push(out: &mut String, mark: &Written) {
         Mark::Area(area) => push_area(out, area),
         Mark::Stroke(stroke) => match (stroke.path.points(), straight(&stroke.path)) {
             // Square ends first: a straight band isn't a capsule.
-            _ if mark.mark.is_butt() => push_rings(out, &rings(mark)),
+            _ if mark.mark.is_butt() || mark.line().is_some() => push_rings(out, &rings(mark)),
             ([dot], _) => push_circle(out, dot.at, mark.width()),
             (_, Some([a, b])) => push_capsule(out, a, b, mark.width()),
             _ => push_rings(out, &rings(mark)),

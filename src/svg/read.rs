@@ -6,7 +6,7 @@
 mod element;
 mod ground;
 
-use super::dialect::{self, Unit};
+use super::dialect::{self, LINE, Unit, WIDTHS};
 use super::dom::{Content, Dom, Node, short};
 use super::options::Length;
 use super::path::{self, Kind};
@@ -20,6 +20,9 @@ use element::Element;
 
 /// Most groups within groups; the writer makes less.
 const MAX_LEVELS: usize = 8;
+
+/// The element of Inkscape's live effects.
+const EFFECT: &str = "path-effect";
 
 /// The properties of layers and groups, which their marks inherit.
 const INHERITED: [&str; 7] = [
@@ -206,6 +209,8 @@ impl Reader {
         while let Some(node) = children.next() {
             match node.name() {
                 "title" => drop(self.leaf(node)?),
+                // Live effects, which draw nothing by themselves.
+                "defs" if node.children().all(|child| child.name() == EFFECT) => {}
                 "g" if levels > 0 => {
                     let inner = self.element(node)?.within(&group.inherited(), &[])?;
                     self.marks(&inner, unit, levels - 1, marks)?;
@@ -253,7 +258,11 @@ fn painted(
         }
         (true, false, None) => {
             let color = element.get("fill", dialect::channels)?;
-            Ok(vec![area(element, unit, color, None)?])
+            Ok(vec![line(
+                element,
+                unit,
+                area(element, unit, color, None)?,
+            )?])
         }
         (false, true, None) => strokes(element, unit),
         (false, ..) => Err(element.refused("has no stroke and no fill: remove it")),
@@ -269,6 +278,49 @@ fn area(element: &Element<'_>, unit: Unit, color: [u8; 3], shade: Option<Shade>)
     let opacity = f32::from(opacity.unwrap_or(u8::MAX)) / 255.0;
     let plain = Area::plain(rings, rgb(color), opacity);
     Ok(Area { shade, ..plain }.into())
+}
+
+/// The stroke whose outline an area is, if its element says so. One that was edited is the area that is seen.
+fn line(element: &Element<'_>, unit: Unit, mark: Mark) -> Result<Mark> {
+    let [line, widths] = [LINE, WIDTHS].map(|key| element.node.get(key));
+    let refused = |why: String| element.refused(format!("{why}: remove {LINE} and {WIDTHS}"));
+    let (line, widths) = match (line, widths) {
+        (None, None) => return Ok(mark),
+        (Some(line), Some(widths)) => (line, widths),
+        _ => {
+            return Err(refused(
+                "has a line without widths, or widths without a line".into(),
+            ));
+        }
+    };
+    let Mark::Area(area) = &mark else {
+        return Ok(mark);
+    };
+    let lines = path::parse(line, Kind::Line, unit).unwrap_or_default();
+    let Ok([path]) = <[Path; 1]>::try_from(lines) else {
+        let why = format!(
+            "has {LINE}=\"{}\", which is not one line of the dialect",
+            short(line)
+        );
+        return Err(refused(why));
+    };
+    let radius = |text: &str| Some(0.5 * px(unit.parse(text).filter(|&width| width >= 0)?));
+    let radii: Option<Vec<f64>> = widths.split_ascii_whitespace().map(radius).collect();
+    let Some(radii) = radii else {
+        let why = format!(
+            "has {WIDTHS}=\"{}\", which are not widths of 0 or more",
+            short(widths)
+        );
+        return Err(refused(why));
+    };
+    check_counts(element, std::slice::from_ref(&path), "line")?;
+    let stroke = Stroke::varying(path, radii, area.color, area.opacity);
+    let stroke =
+        stroke.map_err(|error| refused(format!("has widths that no line has ({error})")))?;
+    Ok(match stroke.has_outline(&area.rings) {
+        true => stroke.into(),
+        false => mark,
+    })
 }
 
 fn strokes(element: &Element<'_>, unit: Unit) -> Result<Vec<Mark>> {

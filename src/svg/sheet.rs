@@ -42,7 +42,7 @@ impl Sheet {
     ) -> Self {
         let marks: Vec<&Written> = marks.filter(|mark| mark.mark.shade().is_none()).collect();
         let order = distinct_colors(marks.iter().map(|mark| mark.color()));
-        let strokes = marks.iter().filter(|mark| !mark.is_area());
+        let strokes = marks.iter().filter(|mark| !mark.is_filled());
         let mut widths: Vec<i64> = strokes.map(|stroke| stroke.width()).collect();
         widths.sort_unstable();
         widths.dedup();
@@ -84,7 +84,7 @@ impl Sheet {
         order: &[[u8; 3]],
     ) -> String {
         let has = |is_area: bool| {
-            let own = marks.iter().filter(move |mark| mark.is_area() == is_area);
+            let own = marks.iter().filter(move |mark| mark.is_filled() == is_area);
             own.map(|mark| mark.color()).collect::<BTreeSet<_>>()
         };
         let (areas, strokes) = (has(true), has(false));

@@ -105,7 +105,7 @@ struct Visit {
 }
 
 impl Visit {
-    /// All ways to draw a mark: an area begins with its first ring, a shape where its element says.
+    /// All ways to draw a mark: an area begins with its first ring, a shape and the outline of a line where their elements say.
     fn all(stroke: usize, mark: &Written) -> Vec<Self> {
         let Some(path) = mark.paths().first() else {
             return Vec::new();
@@ -117,7 +117,8 @@ impl Visit {
             is_reversed: false,
         };
         let forward = beginning_at(0);
-        if mark.shape().is_some() || path.points().len() == 1 {
+        let is_fixed = mark.shape().is_some() || mark.line().is_some();
+        if is_fixed || path.points().len() == 1 {
             return vec![forward];
         }
         if !path.is_closed() {
@@ -142,6 +143,9 @@ impl Visit {
     /// The stroke, drawn in this way.
     fn drawn(&self, stroke: &Written) -> Written {
         let mut drawn = stroke.clone();
+        if stroke.line().is_some() {
+            return drawn;
+        }
         let path = match &mut drawn.mark {
             Mark::Stroke(stroke) => Some(&mut stroke.path),
             Mark::Area(area) => area.rings.first_mut(),

@@ -40,9 +40,11 @@ fn numbered(
     let mut out = String::new();
     for (index, mut layer) in layers.into_iter().enumerate() {
         let number = first + index;
-        let shaded = layer.strokes.iter_mut();
-        let shaded = shaded.filter(|mark| mark.mark.shade().is_some());
-        for (k, mark) in shaded.enumerate() {
+        let has_powerstrokes = options.form == Form::Powerstroke;
+        let named = layer.strokes.iter_mut().filter(|mark| {
+            mark.mark.shade().is_some() || has_powerstrokes && mark.line().is_some()
+        });
+        for (k, mark) in named.enumerate() {
             mark.place = [number, k + 1];
         }
         out.push_str(&shortest(number, &layer, options, sheet));
@@ -54,7 +56,8 @@ fn numbered(
 /// depends on its neighbours; the width then counts as shared, and the colour as the mark's own.
 pub fn mark_bytes(mark: &Mark, options: &WriteOptions) -> usize {
     quantized_anywhere(mark, options.precision).map_or(0, |mark| {
-        element::bytes(&mark.into(), options.form, options.unit())
+        let written = Written::rounded(mark, options.precision);
+        element::bytes(&written, options.form, options.unit())
     })
 }
 
@@ -156,12 +159,18 @@ fn text(
         LayerKind::Stage => ("stage", format!("Stage {number}")),
     };
     let id = format!("{kind}-{number}");
+    let namespace = match layer.strokes.iter().any(|mark| mark.line().is_some()) {
+        true if form != Form::Outlines => {
+            format!(" xmlns:strokefit=\"{}\"", dialect::LINE_NAMESPACE)
+        }
+        _ => String::new(),
+    };
     let transform = match unit {
         Unit::PX => String::new(),
         _ => format!(" transform=\"{}\"", unit.transform()),
     };
     let mut out = format!(
-        "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{}{transform}{}>\n\
+        "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{namespace}{}{transform}{}>\n\
          <title>{label}: {}</title>\n",
         style_attributes(layer, form),
         element::layer_width(&layer.strokes, form, unit),
@@ -180,7 +189,11 @@ fn text(
 
 /// The numbers of areas and strokes of a layer in words.
 fn counts(layer: &Layer) -> String {
-    let areas = layer.strokes.iter().filter(|mark| mark.is_area()).count();
+    let areas = layer
+        .strokes
+        .iter()
+        .filter(|mark| mark.mark.is_area())
+        .count();
     counted(areas, layer.strokes.len() - areas)
 }
 
@@ -188,7 +201,7 @@ fn counts(layer: &Layer) -> String {
 fn style_attributes(layer: &Layer, form: Form) -> &'static str {
     let round = || layer.strokes.iter().filter(|mark| mark.is_round());
     let mut paths = round().flat_map(Written::paths);
-    if form == Form::Outlines || layer.strokes.iter().all(Written::is_area) {
+    if form == Form::Outlines || layer.strokes.iter().all(Written::is_filled) {
         ""
     } else if round().next().is_none() {
         " fill=\"none\""

@@ -185,6 +185,7 @@ fn push_area(
         rings: &rings.ends,
         form: None,
         paint,
+        sweep: None,
         style: &[0.0, red, green, blue, opacity],
     });
 }

@@ -129,6 +129,7 @@ fn strokes(numbers: &[f32], kinds: &[u8]) -> Strokes {
                 rings: &rings,
                 form: None,
                 paint: None,
+                sweep: None,
                 style,
             });
         }

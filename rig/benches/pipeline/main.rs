@@ -192,6 +192,7 @@ fn settled(name: &str, points: Option<usize>, image: &Image) -> (String, Strokes
             rings: &[],
             form: None,
             paint: None,
+            sweep: None,
             style: path.style,
         });
     }

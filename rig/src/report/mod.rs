@@ -5,6 +5,7 @@
 pub mod cases;
 pub mod compare;
 mod damage;
+pub mod ink;
 pub mod pareto;
 pub mod picture;
 pub mod plot;

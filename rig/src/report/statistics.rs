@@ -33,6 +33,13 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     }
 }
 
+/// The value that a share (0..1) of the values is no larger than; `None` of no values.
+pub(crate) fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().checked_sub(1)?;
+    Some(values[(share * last as f64).round() as usize])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -42,5 +49,12 @@ mod tests {
         assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), 2.5);
         assert!(median(Vec::new()).is_nan());
+    }
+
+    #[test]
+    fn quantiles_are_values() {
+        assert_eq!(quantile(vec![3.0, 1.0, 2.0], 0.5), Some(2.0));
+        assert_eq!(quantile((0..=10).map(f64::from).collect(), 0.9), Some(9.0));
+        assert_eq!(quantile(Vec::new(), 0.5), None);
     }
 }

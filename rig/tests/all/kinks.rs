@@ -398,6 +398,7 @@ fn gradients_at_kinks_of_paths_lie_between_the_slopes_of_both_sides() {
             rings: &[],
             form: None,
             paint: None,
+            sweep: None,
             style: &[2.2, 0.9, 0.2, 0.1, 0.7],
         });
         expect(name, &page, &SMOOTH, bounds);

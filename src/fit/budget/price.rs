@@ -215,6 +215,7 @@ impl Price {
                 rings: &[],
                 form: None,
                 paint: None,
+                sweep: None,
                 style: &[1.67, 0.4, 0.5, 0.6, 1.0],
             })
         };

@@ -54,6 +54,8 @@ impl Constraints {
                 (Form::Shape(kind), _) => kind.project(change),
                 (Form::Band, Some(band)) => band.project(change),
                 (Form::Band, None) => {}
+                // The points follow from the line and its radii, which no step changes.
+                (Form::Sweep, _) => change.fill([0.0; 2]),
             }
         }
         for places in &self.equal {
@@ -84,7 +86,7 @@ impl Constraints {
             match (form, band) {
                 (Form::Shape(kind), _) => kind.restore(points),
                 (Form::Band, Some(band)) => leveled(band, equal).put(points),
-                (Form::Band, None) => {}
+                (Form::Band, None) | (Form::Sweep, _) => {}
             }
         }
         let numbers = strokes.numbers_mut();

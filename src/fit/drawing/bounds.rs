@@ -68,7 +68,9 @@ impl Bounds {
     pub(in crate::fit) fn apply(&self, stroke: StrokeMut<'_>) {
         let margin = self.margin;
         let [width, height] = self.sides;
-        for end in stroke.points {
+        // The outline of a line whose width varies stays as that says.
+        let points = stroke.points.iter_mut().filter(|_| stroke.sweep.is_none());
+        for end in points {
             end[0] = end[0].clamp(-margin, width + margin);
             end[1] = end[1].clamp(-margin, height + margin);
         }

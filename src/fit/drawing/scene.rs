@@ -96,5 +96,8 @@ fn scale(strokes: &mut Strokes, factor: f32) {
         if let Some(paint) = stroke.paint {
             paint.scale *= factor;
         }
+        if let Some(sweep) = stroke.sweep {
+            sweep.scale(factor.into());
+        }
     });
 }

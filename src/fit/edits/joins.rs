@@ -162,6 +162,7 @@ fn joined(strokes: &Strokes, pair: Pair) -> Change {
         rings: &[],
         form: None,
         paint: None,
+        sweep: None,
         style: &style,
     };
     Change::Marks(vec![stroke.to_mark()])

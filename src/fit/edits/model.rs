@@ -44,14 +44,15 @@ pub(super) struct Cut {
 
 impl<'a> QuadraticModel<'a> {
     /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. The points of a band
-    /// come and go in pairs, so bands have none; nor have paths with cubic curves or arcs, whose points stay as many and of their
+    /// come and go in pairs, so bands have none; nor have outlines of lines whose width varies, which follow from those, and paths with cubic curves or arcs, whose points stay as many and of their
     /// kinds.
     pub(in crate::fit) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
         let of_mark = |mark: usize| {
             let stroke = strokes.get(mark);
             // The survey has the vertices of all paths of a mark one after the other.
             let mut first = survey.firsts[mark] as usize;
-            let is_fit = stroke.is_finite() && stroke.form != Some(Form::Band);
+            let is_tied = matches!(stroke.form, Some(Form::Band | Form::Sweep));
+            let is_fit = stroke.is_finite() && !is_tied;
             let paths = stroke.paths().enumerate().filter(move |_| is_fit);
             let paths = paths.map(move |(path, (_, points))| {
                 let model = Self::new(survey, points, (mark, path, stroke.is_area()), first);

@@ -148,7 +148,11 @@ pub(super) fn paying(
     }
     let most = config.points.unwrap_or(usize::MAX);
     let has_room = |stroke: &Stroke| {
-        let strokes = Strokes::from_iter([stroke]);
+        // The points of its line count, and not those of an outline.
+        let strokes = Strokes::from_iter([&Stroke {
+            radii: Vec::new(),
+            ..stroke.clone()
+        }]);
         written_points(strokes.get(0)) <= most
     };
     traced

@@ -19,6 +19,8 @@ pub(super) struct Anatomy {
     pub(super) parameters: usize,
     /// All of them.
     pub(super) numbers: usize,
+    /// Those of shapes and of the widths of strokes; of the outline of a line whose width varies, those of that line and its widths.
+    pub(super) line_numbers: usize,
     /// True if a rectangle fills the page behind everything else.
     pub(super) has_page: bool,
 }
@@ -44,11 +46,17 @@ impl Anatomy {
         };
         for (_, &node) in counted {
             anatomy.parameters += parameters(node);
-            anatomy.numbers += node
-                .attributes()
-                .filter(|a| a.namespace().is_none())
-                .map(|a| numbers(node.tag_name().name(), a.name(), a.value()))
-                .sum::<usize>();
+            let line = line_numbers(node);
+            for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
+                let name = attribute.name();
+                let count = numbers(node.tag_name().name(), name, attribute.value());
+                anatomy.numbers += count;
+                let is_own = is_shape(node) && GEOMETRY.contains(&name) && line.is_none();
+                if name == "stroke-width" || is_own {
+                    anatomy.line_numbers += count;
+                }
+            }
+            anatomy.line_numbers += line.unwrap_or_default();
         }
         Ok(anatomy)
     }
@@ -87,6 +95,29 @@ pub(super) fn elements(svg: &str) -> Result<Vec<Range<usize>>> {
         .collect())
 }
 
+/// The text with each of the painted shapes alone, from back to front, without a rectangle that fills the page.
+///
+/// # Errors
+/// As [`Anatomy::of`].
+pub(super) fn each_alone(svg: &str) -> Result<Vec<String>> {
+    let document = parse(svg)?;
+    let root = document.root_element();
+    let all = painted_with_page(root);
+    let mut gaps = Vec::new();
+    let mut end = 0;
+    for shape in &all {
+        gaps.push(&svg[end..shape.range().start]);
+        end = shape.range().end;
+    }
+    gaps.push(&svg[end..]);
+    let alone = |i: usize| {
+        let shape = &svg[all[i].range()];
+        gaps[..=i].concat() + shape + &gaps[i + 1..].concat()
+    };
+    let first = all.len() - painted(root).len();
+    Ok((first..all.len()).map(alone).collect())
+}
+
 /// The places in the text of an artist's things: the outermost groups and shapes, or all shapes if there is only one.
 ///
 /// # Errors
@@ -111,6 +142,14 @@ pub(super) fn things(svg: &str) -> Result<Vec<Range<usize>>> {
 
 /// The painted shapes but a rectangle that fills the page.
 fn painted<'a, 'input>(root: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
+    let mut shapes = painted_with_page(root);
+    if shapes.first().is_some_and(|first| is_page(*first, root)) {
+        shapes.remove(0);
+    }
+    shapes
+}
+
+fn painted_with_page<'a, 'input>(root: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
     let is_drawn = |node: &Node<'_, '_>| {
         !node
             .ancestors()
@@ -120,11 +159,7 @@ fn painted<'a, 'input>(root: Node<'a, 'input>) -> Vec<Node<'a, 'input>> {
         .descendants()
         .filter(|node| is_painted(*node))
         .filter(is_drawn);
-    let mut shapes: Vec<_> = shapes.collect();
-    if shapes.first().is_some_and(|first| is_page(*first, root)) {
-        shapes.remove(0);
-    }
-    shapes
+    shapes.collect()
 }
 
 /// Elements whose contents are painted where they are used.
@@ -145,6 +180,11 @@ fn parse(svg: &str) -> Result<Document<'_>> {
 
 const SHAPES: [&str; 7] = [
     "path", "circle", "ellipse", "rect", "line", "polyline", "polygon",
+];
+
+/// The attributes of shapes that tell where they are.
+const GEOMETRY: [&str; 15] = [
+    "d", "points", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2",
 ];
 
 fn is_shape(node: Node<'_, '_>) -> bool {
@@ -189,6 +229,15 @@ fn parameters(node: Node<'_, '_>) -> usize {
         "polyline" => 2 * corners().saturating_sub(1),
         _ => 0,
     }
+}
+
+/// The namespace of the attributes with which we write the line that a path is the outline of.
+const LINE: &str = "urn:strokefit:line";
+
+/// Numbers of the line that a node is the outline of, and of its widths.
+fn line_numbers(node: Node<'_, '_>) -> Option<usize> {
+    let [data, widths] = ["line", "widths"].map(|name| node.attribute((LINE, name)));
+    Some(segments(data?).map(written).sum::<usize>() + listed(widths?))
 }
 
 /// The segments before the first error, which are all that is drawn.
@@ -315,6 +364,25 @@ mod tests {
             <g fill="none" stroke="#102030" style="stroke-width:2px; fill-opacity:.5"><path fill="url(#a)" d="M0 0h1"/></g>"##,
         );
         assert_eq!((parameters, numbers), (2, 8 + 4 + 1 + 3 + 2 + 3));
+    }
+
+    #[test]
+    fn an_outline_counts_as_its_line() {
+        let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" xmlns:strokefit="urn:strokefit:line"><g stroke-width="3"><path fill="#102030" d="M1 2h9v9z" strokefit:line="M1 2Q3 4 5 6" strokefit:widths="1 2.5"/><circle r="2"/></g></svg>"##;
+        assert_eq!(Anatomy::of(svg).unwrap().line_numbers, 1 + (2 + 4 + 2) + 1);
+    }
+
+    #[test]
+    fn shapes_are_alone_in_their_groups() {
+        let page = r#"<rect width="8" height="8"/>"#;
+        let svg = format!(
+            r#"<svg width="8" height="8"><g>{page}<path d="M0 0"/> <g fill="red"><path d="M1 1"/></g></g></svg>"#
+        );
+        let expected = [
+            r#"<svg width="8" height="8"><g><path d="M0 0"/> <g fill="red"></g></g></svg>"#,
+            r#"<svg width="8" height="8"><g> <g fill="red"><path d="M1 1"/></g></g></svg>"#,
+        ];
+        assert_eq!(each_alone(&svg).unwrap(), expected);
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod color_difference;
 mod displacement;
 mod distances;
 mod hidden;
+pub mod ink;
 mod page;
 
 use std::time::Instant;

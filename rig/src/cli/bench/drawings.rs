@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::bench::drawings::{Drawing, Kind, Pictures};
 use crate::bench::files::{few, has_ending, named, stem};
 use crate::bench::gallery::{Gallery, PANEL_PX};
-use crate::bench::inverse::{self, Drawer, Outcome, Truth};
+use crate::bench::inverse::{self, Drawer, Outcome, Truth, ink};
 use crate::bench::programs::installed_for;
 use crate::lab::ResultFolder;
 use crate::report::Damage;
@@ -21,6 +21,10 @@ use super::{Extents, say, say_missing};
 /// Drawings of shapes that a short run of `inverse` takes, at most, and pictures that one of `robust` takes.
 const FEW_DRAWINGS: usize = 6;
 const FEW_PICTURES: usize = 2;
+
+/// Drawings in ink of each kind: usual, and of short runs.
+const INK_DRAWINGS: usize = 4;
+const FEW_INK_DRAWINGS: usize = 1;
 
 /// Endings of the files that a folder stands for in `robust`.
 const ENDINGS: [&str; 4] = ["svg", "png", "jpg", "jpeg"];
@@ -38,7 +42,8 @@ const SHOWN: usize = 6;
 /// Numbers, colours and edges are compared, and the centre lines of strokes.
 #[derive(Debug, clap::Args)]
 pub(in crate::cli) struct Inverse {
-    /// SVGs, and folders of them [default: drawings of strokes that are built in]
+    /// SVGs, and folders of them [default: drawings of strokes that are built in]; with --ink, pictures with their lines in a JSON
+    /// file beside them [default: drawings in ink of seven kinds]
     drawings: Vec<PathBuf>,
     #[command(flatten)]
     pub(super) extents: Extents,
@@ -49,6 +54,15 @@ pub(in crate::cli) struct Inverse {
     /// than of strokes, too]
     #[arg(long, value_name = "DAMAGE", value_delimiter = ',')]
     damage: Vec<Damage>,
+    /// Find lines whose width varies again in pictures of drawings in ink: which come back as one element each?
+    #[arg(long, conflicts_with_all = ["sides", "damage"])]
+    ink: bool,
+    /// Drawings in ink of each kind [default: 4; with --short: 1]
+    #[arg(long, value_name = "N", value_parser = domain::count, requires = "ink")]
+    count: Option<usize>,
+    /// Glyphs to draw in ink: SVGs of centre lines, as KanjiVG's
+    #[arg(long, value_name = "FILE.svg", num_args = 1.., requires = "ink")]
+    kanji: Vec<PathBuf>,
 }
 
 /// Damage clean pictures and draw them, beside other programs that are installed (pyautotrace, potrace, vtracer, Inkscape):
@@ -113,6 +127,9 @@ impl Run<'_> {
 impl Inverse {
     /// Runs it; how many cases failed.
     pub(super) fn run(&self, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
+        if self.ink {
+            return self.in_ink(files, verbosity);
+        }
         let (strokes, mut shapes) = self.drawings(verbosity)?;
         if self.extents.short {
             shapes = few(shapes, FEW_DRAWINGS);
@@ -144,6 +161,50 @@ impl Inverse {
         }
         say_missing(&installed_for(Kind::Shapes).1, verbosity);
         Ok(failures)
+    }
+
+    /// Draws pictures in ink again; how many failed.
+    fn in_ink(&self, files: &mut ResultFolder, verbosity: Verbosity) -> Result<usize> {
+        let usual = if self.extents.short {
+            FEW_INK_DRAWINGS
+        } else {
+            INK_DRAWINGS
+        };
+        let mut given = Vec::new();
+        for (path, _) in named(&self.drawings, &["png"])? {
+            given.push(ink::Drawing::given(&path, &input::picture(&path)?)?);
+        }
+        for (i, (path, _)) in named(&self.kanji, &["svg"])?.iter().enumerate() {
+            given.push(ink::Drawing::glyph(&stem(path), &input::svg(path)?, i)?);
+        }
+        let count = match given.len() {
+            0 => self.count.unwrap_or(usual),
+            _ => 0,
+        };
+        let (peers, missing) = installed_for(Kind::Strokes);
+        let mut gallery = Gallery::default();
+        let mut tell = |outcome: &ink::Outcome<'_>| {
+            say(&outcome.entry.line());
+            outcome.show(&mut gallery)?;
+            let (drawing, name) = (outcome.drawing, outcome.drawing.name());
+            if outcome.entry.is_own() {
+                files.picture(&format!("{name}.png"), drawing.picture())?;
+                files.text(&format!("{name}.truth.json"), &drawing.truth()?)?;
+            }
+            match outcome.svg {
+                "" => Ok(()),
+                svg => files.text(&outcome.entry.svg_name(), svg),
+            }
+        };
+        let all = ink::Drawing::own(count).chain(given.into_iter().map(Ok));
+        let report = ink::run(all, &Drawer::default_fit(), &peers, &mut tell)?;
+        say(&format!("\n{}", report.summary().markdown()));
+        files.text("ink.csv", &report.table().csv())?;
+        files.text("ink.md", &report.markdown())?;
+        files.text("ink.json", &json(&report)?)?;
+        files.picture("ink.png", &gallery.sheet()?)?;
+        say_missing(&missing, verbosity);
+        Ok(report.failures())
     }
 
     /// The drawings of strokes, with those that are built in, and all others.

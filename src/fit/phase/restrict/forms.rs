@@ -101,6 +101,7 @@ fn shapes(session: &Session<'_>, mut room: usize) -> Vec<Edit> {
     let shaped = |i: usize, mark: Mark, room: &mut usize| {
         let is_disc = |dot: &Stroke| has_areas && dot.cap == Cap::Round && is_dot(&dot.path);
         let marks = match mark {
+            Mark::Stroke(stroke) if stroke.is_varying() => return None,
             Mark::Stroke(stroke) if is_disc(&stroke) => vec![disc(&stroke).into()],
             Mark::Stroke(stroke) if stroke.cap == Cap::Butt => return None,
             Mark::Stroke(mut stroke) => {
@@ -134,7 +135,8 @@ fn disc(dot: &Stroke) -> Area {
 /// For each traced stroke a band: its square ends cover as much as round ones that end later.
 fn squares(session: &Session<'_>) -> Vec<Edit> {
     let squared = |_: usize, mark: Mark| {
-        let stroke = mark.as_stroke().filter(|stroke| stroke.cap == Cap::Round)?;
+        let is_even = |stroke: &&Stroke| stroke.cap == Cap::Round && !stroke.is_varying();
+        let stroke = mark.as_stroke().filter(is_even)?;
         // A half disc covers ½πr², as much as a rectangle 2r wide and ¼πr long.
         let beyond = [FRAC_PI_4 * stroke.radius; 2];
         let width = 2.0 * stroke.radius;

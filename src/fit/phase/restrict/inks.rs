@@ -69,7 +69,7 @@ pub(super) fn ties(drawing: &Drawing, inks: &[Rgb]) -> Ties {
 
 /// The opaque stroke of as much ink in the colour that the picture has along its middle.
 fn inked(stroke: &Stroke, picture: &Image) -> Option<Stroke> {
-    if stroke.cap == Cap::Butt || stroke.radius as f32 > THIN {
+    if stroke.cap == Cap::Butt || stroke.is_varying() || stroke.radius as f32 > THIN {
         return None;
     }
     let (middle, sides) = seen_along(stroke, picture);

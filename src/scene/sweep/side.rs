@@ -1,0 +1,240 @@
+//! A side of an outline: curves through samples of it.
+
+use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, QuadBez};
+
+use super::length;
+use crate::math::{Point, Vec2};
+use crate::scene::PathPoint;
+
+/// Farthest that a curve is from the samples, px: rasterisers have steps of 1/16 px at best.
+const TOLERANCE: f64 = 0.04;
+/// Rounds of finding the parameters of the samples on a curve anew.
+const ROUNDS: usize = 3;
+
+/// The points of a side, as far as it is known.
+#[derive(Debug, Default)]
+pub(super) struct Side {
+    pub(super) points: Vec<PathPoint>,
+    /// Places on it that are still to be joined by curves.
+    run: Vec<Sample>,
+}
+
+/// A place on a side.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    at: Point,
+    /// The directions in which the side arrives and leaves; about the same.
+    ways: [Vec2; 2],
+}
+
+impl Side {
+    /// Adds a place that the side runs through smoothly.
+    pub(super) fn sample(&mut self, at: Point, way: Vec2) {
+        self.run.push(Sample { at, ways: [way; 2] });
+    }
+
+    /// Says in which direction the side leaves the last place, if it turns a little there.
+    pub(super) fn turn(&mut self, way: Vec2) {
+        if let Some(last) = self.run.last_mut() {
+            last.ways[1] = way;
+        }
+    }
+
+    /// Adds a place that a line leads to.
+    pub(super) fn corner(&mut self, at: Point) {
+        self.end();
+        self.push(PathPoint::on(at));
+    }
+
+    /// Adds a point. Places on the side that coincide are one, and what leads back to where it came from goes.
+    pub(super) fn push(&mut self, point: PathPoint) {
+        let on = |p: &PathPoint| p.is_on().then_some(p.at);
+        let count = self.points.len();
+        let before = |k: usize| count.checked_sub(k).and_then(|i| on(&self.points[i]));
+        if on(&point).is_some() && before(1) == on(&point) {
+            return;
+        }
+        if on(&point).is_some() && before(1).is_some() && before(2) == on(&point) {
+            self.points.pop();
+            return;
+        }
+        self.points.push(point);
+    }
+
+    /// Joins the samples by curves.
+    pub(super) fn end(&mut self) {
+        let run = std::mem::take(&mut self.run);
+        let Some(first) = run.first() else {
+            return;
+        };
+        self.push(PathPoint::on(first.at));
+        let samples = Samples::of(&run);
+        let mut from = 0;
+        while from + 1 < run.len() {
+            let (to, curve) = samples.longest(from);
+            curve.into_iter().for_each(|point| self.push(point));
+            self.push(PathPoint::on(run[to].at));
+            from = to;
+        }
+    }
+}
+
+/// Samples of a smooth side.
+struct Samples<'a> {
+    run: &'a [Sample],
+    /// The samples, and a place between each two of them.
+    places: Vec<Point>,
+    /// The length up to each place.
+    lengths: Vec<f64>,
+}
+
+/// The kinds of curves, by how many control points they have.
+const KINDS: [usize; 3] = [0, 1, 2];
+
+impl<'a> Samples<'a> {
+    fn of(run: &'a [Sample]) -> Self {
+        // The middle of the cubic curve with these directions, whose handles are a third of the chord.
+        let between = |a: Sample, b: Sample| {
+            a.at.midpoint(b.at) + 0.125 * length(b.at - a.at) * (a.ways[1] - b.ways[0])
+        };
+        let pairs = run.windows(2);
+        let inner = pairs.flat_map(|pair| [between(pair[0], pair[1]), pair[1].at]);
+        let first = run.first().map(|first| first.at);
+        let places: Vec<Point> = first.into_iter().chain(inner).collect();
+        let mut lengths = vec![0.0];
+        for pair in places.windows(2) {
+            lengths.push(lengths[lengths.len() - 1] + length(pair[1] - pair[0]));
+        }
+        Self {
+            run,
+            places,
+            lengths,
+        }
+    }
+
+    /// The sample up to which a curve leads from sample `from` that takes fewest numbers for its length, and its control points.
+    fn longest(&self, from: usize) -> (usize, Vec<PathPoint>) {
+        let mut best = (f64::INFINITY, from + 1, Vec::new());
+        for kind in KINDS {
+            let Some((to, curve)) = self.farthest(from, kind) else {
+                continue;
+            };
+            let own = self.lengths[2 * to] - self.lengths[2 * from];
+            let price = (2 + 2 * kind) as f64 / own;
+            // A line serves on equal terms, and so does a quadratic curve.
+            if price < 0.999 * best.0 {
+                best = (price, to, curve);
+            }
+        }
+        (best.1, best.2)
+    }
+
+    /// The farthest sample that a curve of this kind leads to, by bisection.
+    fn farthest(&self, from: usize, kind: usize) -> Option<(usize, Vec<PathPoint>)> {
+        let end = self.run.len() - 1;
+        let curve = |to: usize| self.curve([from, to], kind).map(|curve| (to, curve));
+        if let Some(found) = curve(end) {
+            return Some(found);
+        }
+        let mut best = curve(from + 1)?;
+        let (mut low, mut high) = (from + 1, end);
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            match curve(middle) {
+                Some(found) => (best, low) = (found, middle),
+                None => high = middle,
+            }
+        }
+        Some(best)
+    }
+
+    /// The control points of the curve of this kind between two samples, if it is near to those in between.
+    fn curve(&self, [from, to]: [usize; 2], kind: usize) -> Option<Vec<PathPoint>> {
+        let inner = 2 * from..=2 * to;
+        let (places, lengths) = (&self.places[inner.clone()], &self.lengths[inner]);
+        let whole = lengths[lengths.len() - 1] - lengths[0];
+        let mut shares: Vec<f64> = lengths.iter().map(|l| (l - lengths[0]) / whole).collect();
+        let [a, b] = [self.run[from], self.run[to]];
+        let ([leaving, arriving], [a, b]) = ([a.ways[1], b.ways[0]], [a.at, b.at]);
+        match kind {
+            0 => {
+                let line = kurbo::Line::new(a, b);
+                is_near(&line, places, &mut shares).then(Vec::new)
+            }
+            1 => {
+                let control = meeting([a, b], [leaving, arriving])?;
+                let curve = QuadBez::new(a, control, b);
+                is_near(&curve, places, &mut shares).then(|| vec![PathPoint::off(control)])
+            }
+            _ => {
+                for _ in 0..ROUNDS {
+                    let curve = cubic([a, b], [leaving, arriving], places, &shares)?;
+                    if is_near(&curve, places, &mut shares) {
+                        return Some([curve.p1, curve.p2].map(PathPoint::cubic).to_vec());
+                    }
+                }
+                None
+            }
+        }
+    }
+}
+
+/// Where a curve that leaves one end in a direction, and arrives so at the other one, has its control point.
+fn meeting([a, b]: [Point; 2], [leaving, arriving]: [Vec2; 2]) -> Option<Point> {
+    let turn = leaving.cross(arriving);
+    let [first, second] = [(b - a).cross(arriving) / turn, leaving.cross(b - a) / turn];
+    let is_between = first > 0.0 && second > 0.0 && first.is_finite() && second.is_finite();
+    is_between.then(|| a + first * leaving)
+}
+
+/// The cubic curve with these ends and directions that is nearest to places at these parameters, by least squares over the lengths of
+/// its handles (Schneider, "An algorithm for automatically fitting digitized curves", 1990).
+fn cubic(
+    [a, b]: [Point; 2],
+    [leaving, arriving]: [Vec2; 2],
+    places: &[Point],
+    shares: &[f64],
+) -> Option<CubicBez> {
+    let [mut xx, mut xy, mut yy, mut x, mut y] = [0.0; 5];
+    for (place, &t) in places.iter().zip(shares) {
+        let s = 1.0 - t;
+        let [first, second] = [3.0 * s * s * t * leaving, -3.0 * s * t * t * arriving];
+        let ends = s * s * (s + 3.0 * t) * a.to_vec2() + t * t * (t + 3.0 * s) * b.to_vec2();
+        let rest = place.to_vec2() - ends;
+        xx += first.dot(first);
+        xy += first.dot(second);
+        yy += second.dot(second);
+        x += first.dot(rest);
+        y += second.dot(rest);
+    }
+    let whole = xx * yy - xy * xy;
+    let handles = [(x * yy - y * xy) / whole, (y * xx - x * xy) / whole];
+    // A handle that points back, or beyond the other end, makes a loop.
+    let most = 3.0 * length(b - a);
+    let are_fit = handles.iter().all(|h| (0.0..=most).contains(h));
+    are_fit.then(|| CubicBez::new(a, a + handles[0] * leaving, b - handles[1] * arriving, b))
+}
+
+/// True if a curve is near to places; their parameters become those of the places on it that are nearest, about.
+fn is_near<C: ParamCurve + ParamCurveDeriv>(
+    curve: &C,
+    places: &[Point],
+    shares: &mut [f64],
+) -> bool {
+    let deriv = curve.deriv();
+    let mut most = 0.0_f64;
+    for (place, t) in places.iter().zip(shares) {
+        // Newton's step along the curve.
+        for _ in 0..2 {
+            let (at, velocity) = (curve.eval(*t), deriv.eval(*t).to_vec2());
+            let step = (*place - at).dot(velocity) / velocity.hypot2();
+            *t = if step.is_finite() {
+                (*t + step).clamp(0.0, 1.0)
+            } else {
+                *t
+            };
+        }
+        most = most.max((*place - curve.eval(*t)).hypot2());
+    }
+    most <= TOLERANCE * TOLERANCE
+}

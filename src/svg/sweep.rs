@@ -1,0 +1,102 @@
+//! Lines whose width varies: the attributes that say which line an outline is that of, and Inkscape's live effect.
+//!
+//! Inkscape's PowerStroke draws the outline anew from the line and the widths when either is edited; its interpolator `Linear` runs
+//! the radius as ours does. Other programs draw the outline as it stands.
+
+use super::dialect::{LINE, Unit, WIDTHS};
+use super::layer::Written;
+use super::path::{self, Kind};
+use crate::scene::{Path, units};
+
+/// The beginning of the ids of effects, which the numbers of the layer and of the line in it follow.
+const EFFECT: &str = "powerstroke";
+
+/// Appends the attributes of a mark that is the outline of a line, in this unit.
+pub(super) fn push(out: &mut String, mark: &Written, unit: Unit) {
+    let Some((line, radii)) = mark.line() else {
+        return;
+    };
+    let d = path::data([line], Kind::Line, unit);
+    *out += &format!(" {LINE}=\"{d}\" {WIDTHS}=\"");
+    for (i, radius) in radii.iter().enumerate() {
+        if i > 0 {
+            out.push(' ');
+        }
+        unit.push(out, units(2.0 * radius));
+    }
+    out.push('"');
+    if let Some(id) = effect(mark) {
+        *out += &format!(" inkscape:path-effect=\"#{id}\" inkscape:original-d=\"{d}\"");
+    }
+}
+
+/// Appends the effect of a mark that has one.
+pub(super) fn push_effect(out: &mut String, mark: &Written, end: &str) {
+    let (Some((line, radii)), Some(id)) = (mark.line(), effect(mark)) else {
+        return;
+    };
+    let offset = |(index, radius): (usize, &f64)| {
+        let mut text = format!("{index},");
+        Unit::PX.push(&mut text, units(*radius));
+        text
+    };
+    let offsets: Vec<String> = vertices(line).into_iter().zip(radii).map(offset).collect();
+    *out += &format!(
+        "<defs><inkscape:path-effect effect=\"powerstroke\" id=\"{id}\" is_visible=\"true\" lpeversion=\"1\" \
+         offset_points=\"{}\" not_jump=\"true\" sort_points=\"true\" interpolator_type=\"Linear\" \
+         interpolator_beta=\"0.2\" start_linecap_type=\"round\" end_linecap_type=\"round\" \
+         linejoin_type=\"round\" miter_limit=\"4\" scale_width=\"1\" message=\"\"/></defs>{end}",
+        offsets.join(" | ")
+    );
+}
+
+/// The id of the effect, if the mark has a place in a file with effects.
+fn effect(mark: &Written) -> Option<String> {
+    let [layer, number] = mark.place;
+    let has_effect = number > 0 && mark.line().is_some();
+    has_effect.then(|| format!("{EFFECT}-{layer}-{number}"))
+}
+
+/// For each vertex of a path, the number of pieces before it.
+fn vertices(path: &Path) -> Vec<usize> {
+    let points = path.points();
+    let first = points.iter().position(|p| p.is_on()).unwrap_or(0);
+    let mut found = Vec::new();
+    let mut pieces = 0;
+    for i in 0..points.len() {
+        let [point, next] = [i, i + 1].map(|k| &points[(first + k) % points.len()]);
+        if point.is_on() {
+            found.push(pieces);
+        }
+        // A line begins at a vertex; each control point of a quadratic curve has one of its own; other pieces end in a vertex.
+        let is_line = point.is_on() && next.is_on();
+        let is_end = !point.is_on() && (point.is_quad() || next.is_on());
+        pieces += usize::from(is_line || is_end);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::PathPoint;
+
+    #[test]
+    fn vertices_are_counted_by_the_pieces_before_them() {
+        let at = |x: f64| (x, 2.0 * x * x).into();
+        let points = [
+            PathPoint::on(at(0.0)),
+            PathPoint::on(at(1.0)),
+            PathPoint::off(at(2.0)),
+            PathPoint::off(at(3.0)),
+            PathPoint::on(at(4.0)),
+            PathPoint::cubic(at(5.0)),
+            PathPoint::cubic(at(6.0)),
+            PathPoint::on(at(7.0)),
+            PathPoint::arc(at(8.0)),
+            PathPoint::on(at(9.0)),
+        ];
+        let path = Path::new(points.to_vec(), false).unwrap();
+        assert_eq!(vertices(&path), [0, 1, 3, 4, 5]);
+    }
+}
