@@ -130,7 +130,6 @@ impl<'a> Choice<'a> {
     /// apart, edges are long, lines are left that nothing draws, or colours do not tell where edges are.
     pub(super) fn placed(&self, price: &(dyn Fn(&Mark) -> f32 + Sync)) -> Option<Vec<Traced>> {
         // Where lines join blobs of their colour is no edge, so that descents find it.
-        eprintln!("DBG apart {} long {} edges {}", self.flat.is_apart(), self.is_long(), self.flat.edges());
         if self.flat.is_apart() || self.is_long() {
             return None;
         }
@@ -151,10 +150,11 @@ impl<'a> Choice<'a> {
         // What colours tell badly is to be fitted, and so are strokes that no region tells.
         let is_told = |(votes, stroke): (&Votes, &Option<_>)| !votes.is_empty() || stroke.is_none();
         let is_sure = self.votes.iter().zip(&chosen.strokes).all(is_told)
-            && placing.is_sure(&fills, &chosen.is_stroked);
-        for f in &fills { if !chosen.is_stroked[f.region as usize] && f.deviation>0.2 { eprintln!("DBG unsure {} size {} dev {}", f.region, f.size, f.deviation);} }
-        for (i,(v,st)) in self.votes.iter().zip(&chosen.strokes).enumerate() { if v.is_empty() && st.is_some() { eprintln!("DBG orphan {i}"); } }
-        if !is_sure && is_clean && !has_ink {
+            && placing.is_sure(&fills, |fill| {
+                // Beside lines of ink, specks decide nothing.
+                chosen.is_stroked[fill.region as usize] || (has_ink && fill.size <= TIP)
+            });
+        if !is_sure && is_clean {
             return None;
         }
         let count = chosen.strokes.iter().flatten().count();
@@ -365,11 +365,23 @@ impl<'a> Choice<'a> {
             fills.copied().collect::<Vec<_>>()
         });
         let shapes: Vec<Vec<&Fill<Ring>>> = shapes.collect();
-        let drawn: Vec<Option<Vec<edge::Line>>> =
-            shapes.par_iter().map(|fills| placing.ink(fills)).collect();
+        let drawn = shapes.par_iter().map(|fills| placing.ink(fills));
+        let drawn: Vec<Option<Vec<edge::Line>>> = drawn.collect();
+        // Lines that are not long are lines if no area has their colour.
+        let labels_of = |fills: &[&Fill<Ring>]| self.flat.label(fills[0].region);
+        let pairs = shapes.iter().zip(&drawn);
+        let areas = pairs.filter(|(_, lines)| lines.is_none());
+        let labels: BTreeSet<u16> = areas.map(|(fills, _)| labels_of(fills)).collect();
         for (fills, lines) in shapes.into_iter().zip(drawn) {
-            let Some(lines) = lines else { continue };
-            if lines.is_empty() { continue }
+            let is_alone = !labels.contains(&labels_of(&fills));
+            let is_line = |lines: &Vec<edge::Line>| {
+                let lengths = lines.iter().map(edge::Line::slenderness);
+                let length = lengths.sum::<f64>() / lines.len() as f64;
+                length >= f64::from(if is_alone { LINE } else { SHORT })
+            };
+            let Some(lines) = lines.filter(is_line) else {
+                continue;
+            };
             for fill in &fills {
                 chosen.is_stroked[fill.region as usize] = true;
             }

@@ -18,12 +18,12 @@ const LEAST: usize = 6;
 /// Standard deviation by which the skeleton is smoothed, points of it: a staircase of half a px.
 const SMOOTH: f32 = 3.0;
 
-/// The middles of the lines in a field.
-pub(super) fn middles(field: &Field) -> Vec<Middle> {
+/// The middles of the lines in a field; `None` if what it shows is no lines.
+pub(super) fn middles(field: &Field) -> Option<Vec<Middle>> {
     let (mask, width) = mask(field);
     let keys: Vec<Option<()>> = mask.iter().map(|&inside| inside.then_some(())).collect();
     let shapes = shape::shapes(&keys, width, LEAST);
-    shapes
+    let middles: Vec<Middle> = shapes
         .iter()
         .flat_map(|(_, shape)| {
             let mut graph = Graph::of(shape);
@@ -42,8 +42,20 @@ pub(super) fn middles(field: &Field) -> Vec<Middle> {
                 .map(|line| middle(&line, &crossings))
                 .collect::<Vec<_>>()
         })
-        .collect()
+        .collect();
+    // What lines cover is as long as that is in units of their mean radius.
+    let lengths = middles.iter().map(|middle| {
+        let steps = middle.places.windows(2);
+        steps.map(|ends| (ends[1] - ends[0]).hypot()).sum::<f64>()
+    });
+    let length: f64 = lengths.sum();
+    let covered: f64 = field.values.iter().map(|share| f64::from(*share)).sum();
+    let radius = 0.5 * covered / length;
+    (length >= SLENDER * radius * middles.len() as f64).then_some(middles)
 }
+
+/// Least length of lines in the mean, in units of their mean radius. A guess: a disc has none, a square 0 to 4.
+const SLENDER: f64 = 8.0;
 
 /// What is ink, at [`FINENESS`] times the resolution of the field, and its width. A pale line is darker than what is beside it.
 fn mask(field: &Field) -> (Vec<bool>, usize) {

@@ -42,7 +42,7 @@ mod tracing;
 use std::borrow::Cow;
 
 use crate::image::Image;
-use crate::scene::{Mark, Marks, Path};
+use crate::scene::{Mark, Marks, Path, Stroke};
 use crate::seed::Residual;
 use areas::{Areas, Pixels, Planes};
 use choice::Choice;
@@ -103,12 +103,25 @@ fn marks_of(
     let areas = Areas::of(pixels, tracing);
     let areas = areas.filter(|_| marks != Marks::Areas);
     let mut parts = parts(areas.as_ref(), pixels, tracing);
+    let strokes_of = |parts: &Parts| match &areas {
+        Some(areas) => strokes::strokes(pixels, areas, parts, mattes, tracing),
+        None => Vec::new(),
+    };
+    // Lines that swell come apart into lines and blobs, too.
+    if tracing.may_place && marks != Marks::Strokes && !parts.are_whole() {
+        let whole = Parts::whole(pixels.width);
+        let flat = Flat::of(pixels, mattes, &whole, tracing);
+        let placed = flat.and_then(|flat| {
+            let choice = Choice::of(&flat, strokes_of(&whole), pixels);
+            choice.placed(price)
+        });
+        if let Some(placed) = placed.filter(|placed| has_ink(placed)) {
+            return placed;
+        }
+    }
     let mut round = 0;
     loop {
-        let strokes = match &areas {
-            Some(areas) => strokes::strokes(pixels, areas, &parts, mattes, tracing),
-            None => Vec::new(),
-        };
+        let strokes = strokes_of(&parts);
         let flat = match marks {
             Marks::Strokes => None,
             _ => Flat::of(pixels, mattes, &parts, tracing),
@@ -121,7 +134,7 @@ fn marks_of(
         // A drawing of lines stays one where they are not found before a descent.
         let has_areas = |traced: &[Traced]| traced.iter().any(|t| t.mark.as_area().is_some());
         if let Some(placed) = &placed
-            && (!has_areas(placed) || !choice.may_be_lines())
+            && (!has_areas(placed) || has_ink(placed) || !choice.may_be_lines())
         {
             return placed.clone();
         }
@@ -136,6 +149,12 @@ fn marks_of(
             }
         }
     }
+}
+
+/// True if one of the marks is a line of varying width.
+fn has_ink(traced: &[Traced]) -> bool {
+    let mut strokes = traced.iter().filter_map(|t| t.mark.as_stroke());
+    strokes.any(Stroke::is_varying)
 }
 
 /// The lines of a picture on its canvas that lie between two rows of pixels, if crossings tell that there are such.

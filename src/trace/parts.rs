@@ -48,15 +48,20 @@ pub(super) struct Parts {
 }
 
 impl Parts {
+    /// The parts of a picture `width` px wide in which no shape comes apart.
+    pub(super) fn whole(width: usize) -> Self {
+        Self {
+            width,
+            of: Vec::new(),
+            shapes: Vec::new(),
+        }
+    }
+
     /// The parts of some shapes of a picture `width` px wide that has `count` pixels.
     pub(super) fn of(shapes: &[&Shape], width: usize, count: usize) -> Self {
         let found = shapes.par_iter().map(|shape| blobs(shape));
         let found: Vec<Vec<Option<usize>>> = found.collect();
-        let mut parts = Self {
-            width,
-            of: Vec::new(),
-            shapes: Vec::new(),
-        };
+        let mut parts = Self::whole(width);
         if found.iter().flatten().any(Option::is_some) {
             parts.of = vec![Part::Whole; count];
         }

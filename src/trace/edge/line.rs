@@ -79,6 +79,22 @@ impl Line {
             .fold(0.0, |most, knot| knot.radius.max(most))
     }
 
+    /// Its length in units of its mean radius.
+    pub(in crate::trace) fn slenderness(&self) -> f64 {
+        let owns = own_unknowns(&self.knots).take(self.segments());
+        let (mut length, mut covered) = (0.0, 0.0);
+        for (i, own) in owns.enumerate() {
+            let middle = self.middle(i, own);
+            let ends = middle.vertices.windows(2).zip(middle.radii.windows(2));
+            for (ends, radii) in ends {
+                let step = (ends[1].at - ends[0].at).hypot();
+                length += step;
+                covered += 0.5 * step * (radii[0].value + radii[1].value);
+            }
+        }
+        length * length / covered.max(f64::MIN_POSITIVE)
+    }
+
     /// Half its width at each vertex, px, unless it has one width.
     pub(in crate::trace) fn varying(&self) -> Option<Vec<f64>> {
         (!self.is_even).then(|| self.knots.iter().map(|knot| knot.radius).collect())

@@ -94,10 +94,15 @@ impl<'a> Placing<'a> {
             .painted(&joined, |rings| compound::paths(rings, is_only, &mut room))
     }
 
-    /// True if colours tell where the edges of shapes are, but of those of `left_out` regions.
-    pub(in crate::trace) fn is_sure(&self, fills: &[Fill<Ring>], left_out: &[bool]) -> bool {
-        let fills = fills.iter().filter(|fill| !left_out[fill.region as usize]);
+    /// True if colours tell where the edges of shapes are, but of those that are `left_out`.
+    pub(in crate::trace) fn is_sure(
+        &self,
+        fills: &[Fill<Ring>],
+        left_out: impl Fn(&Fill<Ring>) -> bool,
+    ) -> bool {
         fills
+            .iter()
+            .filter(|fill| !left_out(fill))
             .map(|fill| fill.deviation)
             .all(|deviation| deviation < SURE)
     }
@@ -145,13 +150,8 @@ impl<'a> Placing<'a> {
             doubts,
             rings,
         } = self.inked(fills)?;
-        let middles = ink::middles(&field);
-        let t = std::time::Instant::now();
-        eprintln!("DBG region {} size {} middles {}", fills.len(), fills.iter().map(|f| f.size).sum::<f32>(), middles.len());
-        let lines = edge::lines(&field, &doubts, &middles, &rings);
-        eprintln!("DBG {:?} {:?}", t.elapsed(), lines.as_ref().map(|l| (l.lines.len(), l.lengths, l.deviation)));
-        let lines = lines?;
-        for l in &lines.lines { eprintln!("DBGLINE {}", l.dbg()); }
+        let middles = ink::middles(&field)?;
+        let lines = edge::lines(&field, &doubts, &middles, &rings)?;
         let [by_lines, by_rings] = lines.lengths;
         (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
     }
