@@ -290,6 +290,7 @@ fn nearest(centre: &Line, sample: [f64; 3]) -> [f64; 2] {
 mod tests {
     use super::super::kinds::KINDS;
     use super::*;
+    use strokefit::scene::Scene;
 
     const SIZE: [usize; 2] = [200, 200];
 
@@ -370,6 +371,28 @@ mod tests {
                 "{at} {found}"
             );
         }
+    }
+
+    #[test]
+    fn lines_whose_width_varies_come_back_from_their_file() {
+        let (lines, size) = KINDS[6].drawing(1);
+        let stroke = |line: &Line| {
+            let samples = || line.samples.iter().step_by(5);
+            let points = samples().map(|s| PathPoint::on(place(*s))).collect();
+            let path = Path::new(points, false).unwrap();
+            let radii = samples().map(|s| s[2]).collect();
+            Stroke::varying(path, radii, [0.0; 3], 1.0).unwrap()
+        };
+        let [width, height] = size.map(|px| u32::try_from(px).unwrap());
+        let scene = Scene {
+            stages: vec![lines.iter().map(stroke).collect()],
+            ..Scene::empty(width, height, Some([1.0; 3]))
+        };
+        let text = svg::write(&scene, &svg::WriteOptions::default());
+        let found = Truth::of(&lines, size).found(&Elements::of(&text, size).unwrap());
+        assert_eq!((found.whole, found.elements), (3, 3));
+        let [centre, half_width] = [found.centre_px, found.half_width_px].map(Option::unwrap);
+        assert!(centre[1] < 0.05 && half_width[1] < 0.05, "{found:?}");
     }
 
     #[test]
