@@ -50,6 +50,7 @@ impl Kind {
         let mut dice = Dice::new(self.name, number);
         let size = match self.name {
             "kanji" => [GLYPH_PX; 2],
+            "splines" => [400.0 + dice.below(201) as f64; 2],
             _ => [0, 1].map(|_| 300.0 + dice.below(301) as f64),
         };
         ((self.draw)(&mut dice, size), size.map(|px| px as usize))
@@ -432,14 +433,15 @@ fn slowed(points: &[Point], broad: f64) -> Line {
 
 /// Three splines from left to right that cross, 2 px wide at first, then 18, and 1 at last.
 fn splines(dice: &mut Dice, size: [f64; 2]) -> Vec<Line> {
-    let phase = dice.between(0.0, TAU);
+    let sign = if dice.chance(0.5) { 1.0 } else { -1.0 };
     let line = |i: u8| {
         let from = (f64::from(i) + 0.5) / 3.0;
-        let phase = phase + f64::from(i) * TAU / 3.0;
+        // The middle one bows, so that no two cross where others do.
+        let bow = if i == 1 { 0.3 * sign } else { 0.0 };
         let control = |k: u8| {
             let t = f64::from(k) / 4.0;
-            let wave = 0.25 * sin(TAU * t + phase) * sin(PI * t);
-            let y = from + (1.0 - 2.0 * from) * t + wave + dice.between(-0.05, 0.05);
+            let wave = bow * sin(PI * t) + dice.between(-0.06, 0.06);
+            let y = from + (1.0 - 2.0 * from) * t + wave;
             let y = 30.0 + (size[1] - 60.0) * y.clamp(0.0, 1.0);
             Point::new(20.0 + (size[0] - 40.0) * t, y)
         };
