@@ -1,6 +1,6 @@
 //! DXF: lines, circles and polylines with arcs in millimetres, on a layer for each colour (AutoCAD 2004).
 //!
-//! Strokes and bands are their centre lines, areas are their rings, circles are circles, and dots are points. Arcs are arcs, and curves
+//! Strokes of any kind are their centre lines, areas are their rings, circles are circles, and dots are points. Arcs are arcs, and curves
 //! are pairs of arcs that meet without a corner, as cutters and routers read them; the format has no compound paths and no opacity.
 
 mod arcs;

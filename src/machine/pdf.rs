@@ -224,6 +224,10 @@ impl File {
 
     /// Draws a mark.
     fn mark(&mut self, mark: &Mark) {
+        // PDF has no lines whose width varies.
+        if mark.is_varying() {
+            return self.mark(&mark.clone().filled());
+        }
         let opacity = quantum(mark.opacity());
         self.opacities.insert(opacity);
         let [r, g, b] = channels(mark.color().map(quantum));

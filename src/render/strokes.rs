@@ -650,3 +650,54 @@ impl<'a> FromIterator<&'a Mark> for Strokes {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line whose width varies, from a place on.
+    fn varying(x: f64) -> Stroke {
+        let points = [(x, 2.0), (x + 9.0, 5.0), (x + 14.0, 3.0)];
+        let points = points.map(|p| PathPoint::on(p.into()));
+        let path = Path::new(points.into(), false).unwrap();
+        Stroke::varying(path, vec![0.0, 2.0, 1.0], [0.2; 3], 1.0).unwrap()
+    }
+
+    #[test]
+    fn a_line_whose_width_varies_is_its_outline_and_comes_back() {
+        let dot = Stroke {
+            path: Path::dot((4.0, 4.0).into()),
+            radii: Vec::new(),
+            ..varying(0.0)
+        };
+        let all = [
+            dot.clone(),
+            varying(1.0),
+            dot.clone(),
+            varying(2.0),
+            varying(3.0),
+        ];
+        let mut strokes = Strokes::from_iter(&all);
+        assert!(strokes.get(1).is_area() && !strokes.get(2).is_area());
+        let marks = |strokes: &Strokes| strokes.iter().map(|s| s.to_mark()).collect::<Vec<_>>();
+        let given = all.clone().map(Mark::from);
+        assert_eq!(marks(&strokes), given);
+        // Lists are cut, joined and thinned with the lines.
+        let mut rest = strokes.split_off(2);
+        assert_eq!(marks(&strokes), given[..2]);
+        assert_eq!(marks(&rest), given[2..]);
+        strokes.append(&mut rest);
+        assert_eq!(marks(&strokes), given);
+        strokes.retain(&[true, false, true, false, true]);
+        assert_eq!(marks(&strokes), [0, 2, 4].map(|i| given[i].clone()));
+        // Colours are those of the numbers.
+        strokes.change(|_, mut stroke| stroke.color_mut().fill(0.6));
+        assert_eq!(strokes.get(2).to_mark().color(), [0.6; 3]);
+        // Other points are no outline of the line any more.
+        let edited = StrokeRef {
+            form: None,
+            ..strokes.get(2)
+        };
+        assert!(Strokes::from_iter([edited]).get(0).to_mark().is_area());
+    }
+}

@@ -196,6 +196,9 @@ fn sweep(stroke: &Stroke, grid: &Grid) -> Result<Stroke, Unwritable> {
     };
     let widths: Vec<f64> = radii.into_iter().enumerate().map(width).collect();
     let most = widths.iter().copied().fold(0.0, f64::max);
+    if most == 0.0 {
+        return Err(Unwritable::Invisible);
+    }
     let plain = Stroke {
         path,
         radius: 0.5 * most,
@@ -247,13 +250,8 @@ impl Stroke {
             let given = Path::of_points(points.clone(), self.path.is_closed());
             let path = given.rounded(grid);
             let is_kept = |at: Point| path.points().iter().filter(is_on).any(|p| p.at == at);
-            let count = points.len();
-            let lost = (0..count).find(|&i| {
-                let around = [i + count - 1, i + 1].map(|k| points[k % count]);
-                points[i].is_on()
-                    && around.iter().all(PathPoint::is_quad)
-                    && !is_kept(grid.point(points[i].at))
-            });
+            let is_lost = |p: &PathPoint| p.is_on() && !is_kept(grid.point(p.at));
+            let lost = points.iter().position(is_lost);
             match lost {
                 Some(i) => points[i].at.x = grid.point(points[i].at).x + grid.step(),
                 None => {
@@ -534,6 +532,56 @@ mod tests {
             .map(|s| s.marks.len())
             .collect();
         assert_eq!((sizes, quantized.origins), (vec![1, 2], vec![1, 3]));
+    }
+
+    #[test]
+    fn every_vertex_of_a_line_keeps_its_radius() {
+        let on = |x: f64, y: f64| PathPoint::on((x, y).into());
+        let off = |x: f64, y: f64| PathPoint::off((x, y).into());
+        let varying = |points: &[PathPoint], is_closed: bool, radii: &[f64]| {
+            let path = Path::new(points.to_vec(), is_closed).unwrap();
+            let stroke = Stroke::varying(path, radii.to_vec(), [0.0; 3], 1.0).unwrap();
+            quantized(stroke, 1).unwrap()
+        };
+        // A vertex halfway between control points would be implied.
+        let points = [
+            on(1.0, 1.0),
+            off(3.0, 1.0),
+            on(5.0, 3.0),
+            off(7.0, 5.0),
+            on(9.0, 5.0),
+        ];
+        let line = varying(&points, false, &[0.02, 1.33, 0.0]);
+        assert_eq!(line.radii, [0.0, 1.35, 0.0]);
+        assert_eq!(line.path.points()[2].at, Point::new(5.1, 3.0));
+        // Two vertices that become one have the larger radius, and inside a line none has no width.
+        let points = [
+            on(1.0, 1.0),
+            on(5.0, 3.01),
+            on(5.01, 3.0),
+            on(7.0, 4.0),
+            on(9.0, 5.5),
+        ];
+        let line = varying(&points, false, &[1.0, 1.5, 2.0, 0.0, 1.0]);
+        assert_eq!(line.radii, [1.0, 2.0, 0.05, 1.0]);
+        // Equal widths are one.
+        assert!(!varying(&points[..2], false, &[1.0, 1.01]).is_varying());
+        // Half of a circle is written as two arcs, and the radius runs on.
+        let points = [
+            on(5.0, 5.0),
+            PathPoint::arc((8.02, 8.01).into()),
+            on(11.03, 5.0),
+        ];
+        let line = varying(&points, false, &[1.0, 2.0]);
+        let ends = [line.radii[0], line.radii[line.radii.len() - 1]];
+        assert_eq!(ends, [1.0, 2.0]);
+        assert!(line.radii.is_sorted(), "{line:?}");
+        // A closed line has no ends, so that no radius is 0.
+        let points = [on(2.0, 2.0), on(9.0, 2.0), on(9.0, 8.0)];
+        assert_eq!(
+            varying(&points, true, &[0.0, 1.0, 2.0]).radii,
+            [0.05, 1.0, 2.0]
+        );
     }
 
     #[test]

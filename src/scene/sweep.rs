@@ -247,7 +247,7 @@ fn spans(path: &Path, radii: &[f64]) -> Vec<(PathPiece, [f64; 2])> {
         _ => 1,
     });
     let ends = counts.enumerate().flat_map(|(i, count)| {
-        let radius = |i: usize| radii.get(i % radii.len()).copied().unwrap_or(0.0);
+        let radius = |i: usize| radii.get(i % radii.len().max(1)).copied().unwrap_or(0.0);
         let at = move |j: usize| {
             let share = j as f64 / count as f64;
             (1.0 - share) * radius(i) + share * radius(i + 1)

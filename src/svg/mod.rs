@@ -17,6 +17,7 @@
 //! <path d="M1 2L3 4 9 8Q12 9 12 6T15 3z" stroke="#rrggbb" stroke-width="2.5"/>   a closed path of lines and curves
 //! <path d="M20 20h9v5q-3 4-9 0zm2 1v2h3V21z" fill="#rrggbb"/>         an area of two rings, the second a hole
 //! <circle cx="60" cy="20" r="8.5" fill="#rrggbb"/>                    an area or a stroke of a shape
+//! <path d="…" fill="#rrggbb" strokefit:line="M1 2L9 5" strokefit:widths="0 4.5"/>    a stroke whose width varies
 //! </g>
 //! </svg>
 //! ```
@@ -28,6 +29,12 @@
 //! - Shadows, areas with a blur, lie on the shade and below all layers, each on one line with its filter. Their numbers are in
 //!   px, too, to the tenth, and those of the blur to the hundredth.
 //! - A path with a `fill` is an area, and all its rings are closed; any other path is a stroke. None is both.
+//! - A stroke whose width varies ([`Stroke::varying`](crate::scene::Stroke::varying)) is a path with a `fill`, too. Its `d` is the
+//!   outline, `strokefit:line` its centre line, and `strokefit:widths` the full width at each vertex of that. Other programs ignore both. The
+//!   outline follows from them to the last digit; where another program has changed it, the path is read as the area that is seen.
+//!   The layer declares the prefix. It shares no element with others.
+//! - In the form `powerstroke`, such a path also has `inkscape:original-d` and `inkscape:path-effect`, the id of Inkscape's live effect
+//!   before it, `<defs><inkscape:path-effect effect="powerstroke" …/></defs>`. There Inkscape edits the line and its widths.
 //! - What is a [`Shape`](crate::scene::Shape) is a `<circle>`, an `<ellipse>`, or a `<rect>` whose corners are sharp or, with
 //!   `rx`, round. A line stays a path: Inkscape has no handles for a `<line>`, which takes 16 bytes more.
 //! - A path with `stroke-linecap="butt"`, and with `stroke-linejoin="miter"` where it has a corner, is a

@@ -60,7 +60,9 @@ pub(super) fn scene(dom: &Dom<'_>) -> Result<Scene> {
     if let Some(node) = children.next_if(|node| node.name() == "style") {
         reader.rules = style_sheet(&reader.element(node)?)?;
     }
-    if let Some(node) = children.next_if(|node| node.name() == "rect") {
+    // A rectangle below shadows has an id.
+    let is_background = |node: &Node<'_>| node.name() == "rect" && node.get("id").is_none();
+    if let Some(node) = children.next_if(is_background) {
         let rect = reader.leaf(node)?;
         rect.expect_page(&scene)?;
         scene.background = Some(rect.get("fill", dialect::channels).map(rgb)?);

@@ -583,3 +583,107 @@ fn other_style_sheets_are_refused() {
         assert!(message.contains(expected), "{to}: {message}");
     }
 }
+
+/// A line that is pointed at one end, in a scene of its own.
+fn pointed() -> Scene {
+    let [a, b, c] = [(4.0, 20.0), (15.0, 5.0), (33.0, 12.5)].map(Point::from);
+    let points = vec![PathPoint::on(a), PathPoint::off(b), PathPoint::on(c)];
+    let path = Path::new(points, false).unwrap();
+    let stroke = Stroke::varying(path, vec![0.0, 2.5], [0.0; 3], 1.0).unwrap();
+    Scene {
+        stages: vec![Stage::from_iter([stroke])],
+        ..Scene::empty(40, 30, None)
+    }
+}
+
+#[test]
+fn a_line_whose_width_varies_is_its_outline_with_what_that_is_of() {
+    let scene = pointed();
+    for form in [Form::Plain, Form::Css, Form::Smallest, Form::Powerstroke] {
+        let options = WriteOptions {
+            form,
+            ..WriteOptions::default()
+        };
+        let text = write(&scene, &options);
+        let line = "strokefit:line=\"M4 20Q15 5 33 12.5\" strokefit:widths=\"0 5\"";
+        assert!(text.contains(line), "{text}");
+        let effect = "offset_points=\"0,0 | 1,2.5\"";
+        assert_eq!(text.contains(effect), form == Form::Powerstroke, "{text}");
+        assert!(read(&text).unwrap().strokes().next().unwrap().is_varying());
+        if form != Form::Css {
+            assert_eq!(lint(&text), []);
+        }
+    }
+    let outlines = WriteOptions {
+        form: Form::Outlines,
+        ..WriteOptions::default()
+    };
+    let text = write(&scene, &outlines);
+    assert!(!text.contains("strokefit:"), "{text}");
+    assert_eq!(read(&text).unwrap().areas().count(), 1);
+}
+
+#[test]
+fn an_outline_that_was_edited_is_an_area() {
+    let text = write(&pointed(), &WriteOptions::default());
+    let (before, d) = text.split_once(" d=\"").unwrap();
+    let (d, after) = d.split_once('"').unwrap();
+    let rings = path::parse(d, path::Kind::Ring, dialect::Unit::PX).unwrap();
+    let moved = rings[0]
+        .clone()
+        .map(|p| p + crate::math::Vec2::new(0.01, 0.0));
+    let moved = path::data([&moved], path::Kind::Ring, dialect::Unit::PX);
+    let edited = read(&format!("{before} d=\"{moved}\"{after}")).unwrap();
+    assert_eq!((edited.areas().count(), edited.len()), (1, 1));
+    // The attributes are not written again.
+    assert!(!write(&edited, &WriteOptions::default()).contains("strokefit:line"));
+}
+
+#[test]
+fn a_line_that_is_none_is_refused() {
+    let text = write(&pointed(), &WriteOptions::default());
+    let cases = [
+        ("strokefit:widths=\"0 5\"", "", "without widths"),
+        (
+            "strokefit:widths=\"0 5\"",
+            "strokefit:widths=\"0 x\"",
+            "0 x",
+        ),
+        (
+            "strokefit:widths=\"0 5\"",
+            "strokefit:widths=\"0 -5\"",
+            "0 -5",
+        ),
+        (
+            "strokefit:widths=\"0 5\"",
+            "strokefit:widths=\"0 5 2\"",
+            "3 radii",
+        ),
+        (
+            "strokefit:widths=\"0 5\"",
+            "strokefit:widths=\"0 0\"",
+            "no radius above 0",
+        ),
+        ("strokefit:line=\"M4", "strokefit:line=\"N4", "N4"),
+        (
+            "strokefit:line=\"M4",
+            "strokefit:line=\"M1 2L3 4M4",
+            "not one line",
+        ),
+    ];
+    for (old, new, why) in cases {
+        assert!(text.contains(old), "{text}");
+        let error = read(&text.replace(old, new)).unwrap_err().to_string();
+        assert!(error.contains(why) && error.contains("remove"), "{error}");
+    }
+}
+
+#[test]
+fn a_line_whose_width_varies_comes_back_from_a_foreign_document() {
+    let foreign =
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 40 30\"><text>a</text></svg>";
+    let document = Document::parse(foreign.into()).unwrap();
+    let text = document.with_layers(&pointed(), &WriteOptions::default());
+    let (_, scene) = Document::parse(text).unwrap().split().unwrap();
+    assert_eq!(scene.stages, pointed().quantized(2).scene.stages);
+}

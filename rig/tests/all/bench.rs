@@ -351,3 +351,63 @@ fn scaling_writes_its_series() {
     let table = fs::read_to_string(place.path("out/scaling.csv")).unwrap();
     assert!(table.lines().count() > 7, "{table}");
 }
+
+#[test]
+fn lines_in_ink_are_found_again_in_their_pictures() {
+    let place = Place::new();
+    let glyph = r#"<svg xmlns="http://www.w3.org/2000/svg" width="109" height="109"><path d="M20 30C50 28 70 28 90 30" fill="none" stroke="red"/></svg>"#;
+    fs::write(place.path("a.svg"), glyph).unwrap();
+    let args = ["inverse", "--ink", "--kanji", "a.svg", "-o", "out"];
+    let output = bench(&place, &args);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let lines = lines(&output);
+    assert!(
+        lines[0].starts_with("kanji-a, strokefit: 1 of 1 lines whole"),
+        "{lines:?}"
+    );
+    for name in [
+        "ink.csv",
+        "ink.md",
+        "ink.json",
+        "ink.png",
+        "kanji-a.svg",
+        "kanji-a.png",
+        "kanji-a.truth.json",
+    ] {
+        assert!(place.path("out").join(name).exists(), "{name}");
+    }
+    // Its picture and truth are a drawing, too.
+    let again = bench(
+        &place,
+        &["inverse", "--ink", "out/kanji-a.png", "-o", "again"],
+    );
+    assert_eq!(again.status.code(), Some(0), "{again:?}");
+    let [first, second] = ["out", "again"].map(|folder| {
+        let json = fs::read_to_string(place.path(folder).join("ink.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+        report["entries"][0]["found"].clone()
+    });
+    assert_eq!(first, second);
+}
+
+#[test]
+fn a_picture_in_ink_without_its_lines_is_refused_by_name() {
+    let place = Place::new();
+    place.picture("a.png", 40, 30);
+    let args = ["inverse", "--ink", "a.png", "-o", "out"];
+    for (json, status, said) in [
+        (None, 1, "a.json: cannot be read"),
+        (Some("[]"), 2, "a.json: no lines"),
+        (Some("[[]]"), 2, "line 0 is empty"),
+        (Some("[[[1, 2]]]"), 2, "a.json: invalid length 2"),
+        (Some("[[[1, 2, -1]]]"), 2, "line 0 has [1.0, 2.0, -1.0]"),
+    ] {
+        if let Some(json) = json {
+            fs::write(place.path("a.json"), json).unwrap();
+        }
+        let output = bench(&place, &args);
+        assert_eq!(output.status.code(), Some(status), "{output:?}");
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.lines().count() == 1 && text.contains(said), "{text}");
+    }
+}

@@ -216,6 +216,19 @@ mod tests {
     }
 
     #[test]
+    fn outlines_of_lines_stay_where_they_are() {
+        let path = Path::line((3.0, 4.0).into(), (20.0, 9.0).into());
+        let line = Stroke::varying(path, vec![1.0, 3.0], [0.5; 3], 1.0).unwrap();
+        let strokes = Strokes::from_iter([&line]);
+        let mut slopes = vec![1.0; strokes.numbers().len()];
+        Constraints::forms(&strokes).project(&strokes, &mut slopes);
+        // Colour and opacity are free.
+        let points = 2 * strokes.points();
+        assert!(slopes[..points].iter().all(|slope| *slope == 0.0));
+        assert!(slopes[points..].iter().all(|slope| *slope == 1.0));
+    }
+
+    #[test]
     fn lines_stay_level_and_upright() {
         let points = [
             (1.0, 2.0),

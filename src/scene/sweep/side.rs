@@ -1,5 +1,7 @@
 //! A side of an outline: curves through samples of it.
 
+use std::collections::BTreeMap;
+
 use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, QuadBez};
 
 use super::length;
@@ -68,13 +70,9 @@ impl Side {
             return;
         };
         self.push(PathPoint::on(first.at));
-        let samples = Samples::of(&run);
-        let mut from = 0;
-        while from + 1 < run.len() {
-            let (to, curve) = samples.longest(from);
+        for (to, curve) in Samples::of(&run).curves() {
             curve.into_iter().for_each(|point| self.push(point));
             self.push(PathPoint::on(run[to].at));
-            from = to;
         }
     }
 }
@@ -87,6 +85,9 @@ struct Samples<'a> {
     /// The length up to each place.
     lengths: Vec<f64>,
 }
+
+/// The sample that a curve ends at, and its control points.
+type Curve = (usize, Vec<PathPoint>);
 
 /// The kinds of curves, by how many control points they have.
 const KINDS: [usize; 3] = [0, 1, 2];
@@ -112,25 +113,42 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// The sample up to which a curve leads from sample `from` that takes fewest numbers for its length, and its control points.
-    fn longest(&self, from: usize) -> (usize, Vec<PathPoint>) {
-        let mut best = (f64::INFINITY, from + 1, Vec::new());
-        for kind in KINDS {
-            let Some((to, curve)) = self.farthest(from, kind) else {
-                continue;
-            };
-            let own = self.lengths[2 * to] - self.lengths[2 * from];
-            let price = (2 + 2 * kind) as f64 / own;
-            // A line serves on equal terms, and so does a quadratic curve.
-            if price < 0.999 * best.0 {
-                best = (price, to, curve);
+    /// The curves along all samples that take fewest numbers.
+    fn curves(&self) -> Vec<Curve> {
+        let end = self.run.len() - 1;
+        // From each sample that curves lead to: the numbers up to the end, and the first curve. A dynamic programme, backwards.
+        let mut best: BTreeMap<usize, (usize, Curve)> = BTreeMap::new();
+        let mut open = vec![0];
+        let mut steps: BTreeMap<usize, Vec<Curve>> = BTreeMap::new();
+        while let Some(from) = open.pop().filter(|_| end > 0) {
+            if from < end && !steps.contains_key(&from) {
+                let curves = KINDS.iter().filter_map(|&kind| self.farthest(from, kind));
+                let curves: Vec<Curve> = curves.collect();
+                open.extend(curves.iter().map(|(to, _)| *to));
+                steps.insert(from, curves);
             }
         }
-        (best.1, best.2)
+        for (from, curves) in steps.into_iter().rev() {
+            let priced = curves.into_iter().map(|(to, curve)| {
+                let rest = best.get(&to).map_or(0, |(numbers, _)| *numbers);
+                (rest + 2 + 2 * curve.len(), (to, curve))
+            });
+            // On equal terms the curve with fewest control points, which comes first.
+            if let Some(found) = priced.min_by_key(|(numbers, _)| *numbers) {
+                best.insert(from, found);
+            }
+        }
+        let mut curves = Vec::new();
+        let mut from = 0;
+        while let Some((_, curve)) = best.remove(&from) {
+            from = curve.0;
+            curves.push(curve);
+        }
+        curves
     }
 
     /// The farthest sample that a curve of this kind leads to, by bisection.
-    fn farthest(&self, from: usize, kind: usize) -> Option<(usize, Vec<PathPoint>)> {
+    fn farthest(&self, from: usize, kind: usize) -> Option<Curve> {
         let end = self.run.len() - 1;
         let curve = |to: usize| self.curve([from, to], kind).map(|curve| (to, curve));
         if let Some(found) = curve(end) {

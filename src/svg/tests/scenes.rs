@@ -130,7 +130,7 @@ pub(super) fn stroke() -> impl Strategy<Value = Stroke> {
     };
     let radius = prop_oneof![0.0..20.0_f64, Just(0.5), 0.0..0.01_f64];
     let cap = prop_oneof![2 => Just(Cap::Round), 1 => Just(Cap::Butt)];
-    (shape(), radius, cap, unit(), unit(), unit(), unit()).prop_map(
+    let stroke = (shape(), radius, cap, unit(), unit(), unit(), unit()).prop_map(
         |(path, radius, cap, r, g, b, opacity)| Stroke {
             path,
             radius,
@@ -139,7 +139,19 @@ pub(super) fn stroke() -> impl Strategy<Value = Stroke> {
             color: [r, g, b],
             opacity,
         },
-    )
+    );
+    let radius = prop_oneof![0.0..12.0_f64, Just(0.0), 0.0..0.01_f64];
+    let radii = prop::option::weighted(0.3, prop::collection::vec(radius, 1..9));
+    (stroke, radii).prop_map(|(stroke, radii)| with_radii(stroke, radii.as_deref()))
+}
+
+/// The stroke with these radii at its vertices, over and over; without any if that is no stroke.
+fn with_radii(stroke: Stroke, radii: Option<&[f64]>) -> Stroke {
+    let vertices = stroke.path.points().iter().filter(|p| p.is_on());
+    let radii = radii.unwrap_or_default().iter().cycle();
+    let radii = vertices.zip(radii).map(|(_, radius)| *radius).collect();
+    let varying = Stroke::varying(stroke.path.clone(), radii, stroke.color, stroke.opacity);
+    varying.unwrap_or(stroke)
 }
 
 /// Closed paths; few of them are simple, and many enclose nothing once they are rounded.
@@ -264,14 +276,16 @@ fn alike() -> impl Strategy<Value = Stroke> {
     let look = (0..2_u8, 0..2_u8, 0..3_u8);
     let line = (place(), place()).prop_map(|(a, b)| Path::line(a, b));
     let path = prop_oneof![3 => line, 1 => path(place())];
-    (path, look).prop_map(|(path, (color, width, opacity))| Stroke {
+    let stroke = (path, look).prop_map(|(path, (color, width, opacity))| Stroke {
         path,
         radius: 1.0 + f64::from(width),
         radii: Vec::new(),
         cap: Cap::Round,
         color: [f32::from(color), 0.2, 0.6],
         opacity: if opacity == 0 { 0.5 } else { 1.0 },
-    })
+    });
+    let radii = prop::option::weighted(0.2, Just([0.0, 2.0, 1.0]));
+    (stroke, radii).prop_map(|(stroke, radii)| with_radii(stroke, radii.as_ref().map(|r| &r[..])))
 }
 
 /// An area of few styles around few places, sometimes with a hole or a second part.
@@ -309,7 +323,12 @@ pub(super) fn scene_of_few_styles() -> impl Strategy<Value = Scene> {
 }
 
 pub(super) fn options() -> impl Strategy<Value = WriteOptions> {
-    let form = prop::sample::select(vec![Form::Plain, Form::Smallest, Form::Css]);
+    let form = prop::sample::select(vec![
+        Form::Plain,
+        Form::Smallest,
+        Form::Css,
+        Form::Powerstroke,
+    ]);
     let group = prop::sample::select(Group::ALL.to_vec());
     let width = prop::option::of(Just("120.5mm".parse().unwrap()));
     (0..=6_u8, form, group, width).prop_map(|(precision, form, group, width)| WriteOptions {

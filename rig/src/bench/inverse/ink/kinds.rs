@@ -50,6 +50,7 @@ impl Kind {
         let mut dice = Dice::new(self.name, number);
         let size = match self.name {
             "kanji" => [GLYPH_PX; 2],
+            "splines" => [400.0 + dice.below(201) as f64; 2],
             _ => [0, 1].map(|_| 300.0 + dice.below(301) as f64),
         };
         ((self.draw)(&mut dice, size), size.map(|px| px as usize))
@@ -156,25 +157,26 @@ fn brush(dice: &mut Dice, size: [f64; 2]) -> Vec<Line> {
 fn sweep(dice: &mut Dice, size: [f64; 2]) -> Vec<Point> {
     const MARGIN_PX: f64 = 14.0;
     let least = 0.4 * size[0].min(size[1]);
-    let a = dice.within(size, MARGIN_PX);
-    let mut b = dice.within(size, MARGIN_PX);
-    while a.distance(b) < least {
-        b = dice.within(size, MARGIN_PX);
+    loop {
+        let [a, b] = [0, 1].map(|_| dice.within(size, MARGIN_PX));
+        let axis = b - a;
+        let across = Vec2::new(-axis.y, axis.x);
+        let (bow, sway) = (dice.between(-0.35, 0.35), dice.between(-0.12, 0.12));
+        let control = |i: u8| {
+            let t = f64::from(i) / 6.0;
+            a + axis * t + across * (bow * sin(PI * t) + sway * sin(TAU * t))
+        };
+        let controls: Vec<Point> = (0..=6).map(control).collect();
+        let is_in = |p: &Point| {
+            let sides = [(p.x, size[0]), (p.y, size[1])];
+            sides
+                .iter()
+                .all(|(at, side)| (MARGIN_PX..=side - MARGIN_PX).contains(at))
+        };
+        if axis.hypot() > least && controls.iter().all(is_in) {
+            return spline(&controls);
+        }
     }
-    let axis = b - a;
-    let across = Vec2::new(-axis.y, axis.x);
-    let (bow, sway) = (dice.between(-0.4, 0.4), dice.between(-0.12, 0.12));
-    let hold = |p: Point| {
-        Point::new(
-            p.x.clamp(MARGIN_PX, size[0] - MARGIN_PX),
-            p.y.clamp(MARGIN_PX, size[1] - MARGIN_PX),
-        )
-    };
-    let control = |i: u8| {
-        let t = f64::from(i) / 6.0;
-        hold(a + axis * t + across * (bow * sin(PI * t) + sway * sin(TAU * t)))
-    };
-    spline(&(0..=6).map(control).collect::<Vec<_>>())
 }
 
 /// Rows of script with a broad nib: the width depends on the direction, w = max(thin, broad·|sin(angle − nib)|).
@@ -208,7 +210,7 @@ fn script(dice: &mut Dice, size: [f64; 2], radius: impl Fn(Vec2) -> f64) -> Vec<
             spline(&(0..=letters).map(value).collect::<Vec<_>>())
         };
         // Half the height, and half the width of a letter without that of the row: below 1/TAU it is an arch, above a loop.
-        let [tall, wide] = [each(0.2, 0.42), each(-0.25, 0.45)];
+        let [tall, wide] = [each(0.2, 0.42), each(-0.3, 0.7)];
         let lean = dice.between(0.0, 0.35);
         let last = (tall.len() - 1) as f64;
         let at = |i: usize| {
@@ -431,12 +433,15 @@ fn slowed(points: &[Point], broad: f64) -> Line {
 
 /// Three splines from left to right that cross, 2 px wide at first, then 18, and 1 at last.
 fn splines(dice: &mut Dice, size: [f64; 2]) -> Vec<Line> {
+    let sign = if dice.chance(0.5) { 1.0 } else { -1.0 };
     let line = |i: u8| {
         let from = (f64::from(i) + 0.5) / 3.0;
+        // The middle one bows, so that no two cross where others do.
+        let bow = if i == 1 { 0.3 * sign } else { 0.0 };
         let control = |k: u8| {
             let t = f64::from(k) / 4.0;
-            let wave = if k % 4 == 0 { 0.05 } else { 0.2 };
-            let y = from + (1.0 - 2.0 * from) * t + dice.between(-wave, wave);
+            let wave = bow * sin(PI * t) + dice.between(-0.06, 0.06);
+            let y = from + (1.0 - 2.0 * from) * t + wave;
             let y = 30.0 + (size[1] - 60.0) * y.clamp(0.0, 1.0);
             Point::new(20.0 + (size[0] - 40.0) * t, y)
         };
