@@ -83,6 +83,7 @@
 //! | stroke | a path drawn with a pen that has round ends or square ones, with a colour and an opacity (0..1); see [`scene::Stroke`] |
 //! | area | one or more closed paths, its *rings*, filled where they wind around a point (SVG's nonzero rule), with a colour or a shade and an opacity; see [`scene::Area`] |
 //! | band | a line of even width with square ends and mitred corners: the path and the width of a stroke with [`scene::Cap::Butt`]; see [`scene::Band`] |
+//! | sweep | a line whose width varies: the path of a stroke and a radius at each of its vertices; see [`scene::Stroke::varying`] |
 //! | path | *points*, open or closed: the centre line of a stroke, or a ring; see [`scene::Path`] |
 //! | shape | a closed path that is a circle, an ellipse or a rectangle, with an element of its own; see [`scene::Shape`] |
 //! | point | of a path: *on* it, joined to the next by a line, or *off* it, where it is the control point of a curve |

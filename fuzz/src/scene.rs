@@ -64,7 +64,7 @@ impl Source<'_> {
             }
             _ => Path::line(a, b),
         };
-        Mark::Stroke(Stroke {
+        let stroke = Stroke {
             path,
             radius: radius.into(),
             radii: Vec::new(),
@@ -75,7 +75,14 @@ impl Source<'_> {
             },
             color,
             opacity,
-        })
+        };
+        if !self.byte().is_multiple_of(4) {
+            return stroke.into();
+        }
+        let vertices = stroke.path.points().iter().filter(|p| p.is_on());
+        let radii = vertices.map(|_| f64::from(self.float())).collect();
+        let varying = Stroke::varying(stroke.path.clone(), radii, color, opacity);
+        varying.unwrap_or(stroke).into()
     }
 
     /// One ring to three.

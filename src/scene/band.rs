@@ -268,7 +268,7 @@ impl Mark {
         let rings = self
             .as_stroke()
             .and_then(|stroke| match stroke.is_varying() {
-                true => Some(stroke.swept()),
+                true => Some(stroke.border()),
                 false => Some(stroke.band()?.rings()),
             });
         match rings {

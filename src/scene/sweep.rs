@@ -19,6 +19,7 @@
 //! outer sides and the inner ones meet in the vertex, for the same reason.
 
 mod side;
+mod union;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -78,6 +79,12 @@ impl Stroke {
         !self.radii.is_empty()
     }
 
+    /// The border of what a stroke whose width varies covers: its outline without edges that have the stroke on both sides, as a line
+    /// that crosses itself or turns sharply has them.
+    pub(crate) fn border(&self) -> Vec<Path> {
+        union::united(self.swept())
+    }
+
     /// The outline of a stroke whose width varies: the border of the union of the discs along it, to about 0.05 px. One ring, or one for
     /// each side of a closed path.
     pub(crate) fn swept(&self) -> Vec<Path> {
@@ -123,7 +130,7 @@ impl Disc {
     fn of(at: Point, [velocity, bend]: [Vec2; 2], [radius, slope]: [f64; 2]) -> Self {
         let speed = length(velocity);
         let k = slope / speed;
-        if !(k.abs() < 1.0) {
+        if k.abs() >= 1.0 || k.is_nan() {
             return Self {
                 at,
                 radius,

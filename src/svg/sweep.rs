@@ -6,7 +6,8 @@
 use super::dialect::{LINE, Unit, WIDTHS};
 use super::layer::Written;
 use super::path::{self, Kind};
-use crate::scene::{Path, units};
+use crate::math::Point;
+use crate::scene::{Path, PathPiece, PathPoint, units};
 
 /// The beginning of the ids of effects, which the numbers of the layer and of the line in it follow.
 const EFFECT: &str = "powerstroke";
@@ -26,6 +27,7 @@ pub(super) fn push(out: &mut String, mark: &Written, unit: Unit) {
     }
     out.push('"');
     if let Some(id) = effect(mark) {
+        let d = path::data([&without_arcs(line)], Kind::Line, unit);
         *out += &format!(" inkscape:path-effect=\"#{id}\" inkscape:original-d=\"{d}\"");
     }
 }
@@ -57,32 +59,75 @@ fn effect(mark: &Written) -> Option<String> {
     has_effect.then(|| format!("{EFFECT}-{layer}-{number}"))
 }
 
-/// For each vertex of a path, the number of pieces before it.
+/// For each vertex of a path, the number of curves before it.
 fn vertices(path: &Path) -> Vec<usize> {
     let points = path.points();
-    let first = points.iter().position(|p| p.is_on()).unwrap_or(0);
+    let first = points.iter().position(PathPoint::is_on).unwrap_or(0);
+    let mut pieces = path.pieces();
     let mut found = Vec::new();
-    let mut pieces = 0;
+    let mut curves = 0;
     for i in 0..points.len() {
         let [point, next] = [i, i + 1].map(|k| &points[(first + k) % points.len()]);
         if point.is_on() {
-            found.push(pieces);
+            found.push(curves);
         }
         // A line begins at a vertex; each control point of a quadratic curve has one of its own; other pieces end in a vertex.
         let is_line = point.is_on() && next.is_on();
         let is_end = !point.is_on() && (point.is_quad() || next.is_on());
-        pieces += usize::from(is_line || is_end);
+        if is_line || is_end {
+            curves += pieces.next().map_or(0, |piece| piece.segments().count());
+        }
     }
     found
+}
+
+/// The path with cubic curves for arcs, to a thousandth of a px: into how many curves Inkscape cuts an arc is its own affair.
+fn without_arcs(path: &Path) -> Path {
+    if !path.is_mixed() {
+        return path.clone();
+    }
+    let short = |p: Point| {
+        Point::new(
+            (1000.0 * p.x).round() / 1000.0,
+            (1000.0 * p.y).round() / 1000.0,
+        )
+    };
+    let inner = path.pieces().flat_map(|piece| match piece {
+        PathPiece::Arc(_) => {
+            let cubics = piece.segments().map(|segment| segment.to_cubic());
+            let points = cubics.flat_map(|c| {
+                [
+                    PathPoint::cubic(c.p1),
+                    PathPoint::cubic(c.p2),
+                    PathPoint::on(c.p3),
+                ]
+            });
+            points
+                .map(|p| PathPoint {
+                    at: short(p.at),
+                    ..p
+                })
+                .collect::<Vec<_>>()
+        }
+        piece => piece
+            .between()
+            .chain([PathPoint::on(piece.end())])
+            .collect(),
+    });
+    let start = path.points().iter().find(|p| p.is_on()).copied();
+    let mut points: Vec<PathPoint> = start.into_iter().chain(inner).collect();
+    if path.is_closed() {
+        points.pop();
+    }
+    Path::of_points(points, path.is_closed())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::PathPoint;
 
     #[test]
-    fn vertices_are_counted_by_the_pieces_before_them() {
+    fn vertices_are_counted_by_the_curves_before_them() {
         let at = |x: f64| (x, 2.0 * x * x).into();
         let points = [
             PathPoint::on(at(0.0)),
@@ -97,6 +142,9 @@ mod tests {
             PathPoint::on(at(9.0)),
         ];
         let path = Path::new(points.to_vec(), false).unwrap();
-        assert_eq!(vertices(&path), [0, 1, 3, 4, 5]);
+        // The arc is cut into as many curves as its line has without arcs.
+        let plain = without_arcs(&path);
+        assert_eq!(vertices(&path)[..4], [0, 1, 3, 4]);
+        assert_eq!(vertices(&path)[4], plain.pieces().count());
     }
 }

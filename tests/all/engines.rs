@@ -328,7 +328,30 @@ fn kinds() -> Vec<(&'static str, Scene)> {
     kinds.push(("arcs", of_marks(mixed(&arcs))));
     kinds.push(("cubic curves", of_marks(mixed(&cubics))));
     kinds.push(("bands", page(bands())));
+    kinds.push(("varying widths", page(varying())));
     kinds
+}
+
+/// Lines whose width varies: a tip and a hairpin, a corner, and a closed one, which is translucent.
+fn varying() -> Vec<Stroke> {
+    let hairpin = [
+        (5.0, 10.0, ON),
+        (30.0, 2.0, OFF),
+        (34.0, 20.0, ON),
+        (36.0, 27.0, OFF),
+        (38.0, 20.0, ON),
+    ];
+    let corner = [(8.0, 40.0, ON), (18.0, 22.0, ON), (30.0, 42.0, ON)];
+    let closed = [(44.0, 10.0, ON), (60.0, 14.0, ON), (50.0, 40.0, ON)];
+    let lines = [
+        (bent(&hairpin, false, 1.0, 1.0), vec![0.0, 3.0, 5.0]),
+        (bent(&corner, false, 1.0, 1.0), vec![2.0, 4.0, 1.0]),
+        (bent(&closed, true, 1.0, 0.6), vec![1.0, 3.0, 2.0]),
+    ];
+    let varying = |(line, radii): (Stroke, Vec<f64>)| {
+        Stroke::varying(line.path, radii, line.color, line.opacity).unwrap()
+    };
+    lines.map(varying).into()
 }
 
 /// Lines with square ends and mitred corners, one of them closed, one bent, one translucent.

@@ -1,8 +1,8 @@
 //! Shapes through the program: refined, animated, cut out, as DXF.
 
 use crate::support::{Place, agreement, assert_says, on_white, rendered};
-use strokefit::scene::{Mark, Scene, Shape};
-use strokefit::svg;
+use strokefit::scene::{Mark, Path, PathPoint, Scene, Shape, Stage, Stroke};
+use strokefit::svg::{self, WriteOptions};
 use strokefit::verify::{self, Size};
 
 const SHAPES: &str = r##"<circle cx="32.3" cy="30.6" r="18.2" fill="#c03020"/><rect x="80.5" y="62.2" width="60.3" height="44" rx="9.5" fill="#404858"/>
@@ -116,6 +116,79 @@ fn bands_are_lines_in_every_file() {
         );
         let seen = agreement(&on_white(&filled), &on_white(&text));
         assert!(seen > 35.0, "{form}");
+    }
+}
+
+/// A file with two lines whose width varies, one of which bends more sharply than it is wide.
+fn varying() -> String {
+    let on = |x: f64, y: f64| PathPoint::on((x, y).into());
+    let off = |x: f64, y: f64| PathPoint::off((x, y).into());
+    let line = |points: &[PathPoint], radii: &[f64], color| {
+        let path = Path::new(points.to_vec(), false).unwrap();
+        Stroke::varying(path, radii.to_vec(), color, 1.0).unwrap()
+    };
+    let wave = [
+        on(20.0, 30.0),
+        off(50.0, 10.0),
+        off(80.0, 60.0),
+        on(140.0, 25.0),
+    ];
+    let hairpin = [
+        on(20.0, 80.0),
+        on(90.0, 80.0),
+        off(98.0, 84.0),
+        on(90.0, 90.0),
+        on(60.0, 100.0),
+    ];
+    let lines = [
+        line(&wave, &[0.0, 6.0], [0.1, 0.2, 0.5]),
+        line(&hairpin, &[2.0, 7.0, 7.0, 0.0], [0.6, 0.1, 0.1]),
+    ];
+    let scene = Scene {
+        stages: vec![Stage::from_iter(lines)],
+        ..Scene::empty(160, 120, Some([1.0; 3]))
+    };
+    svg::write(&scene, &WriteOptions::default())
+}
+
+/// The lines whose width varies of a file that strokefit wrote.
+fn varying_in(text: &str) -> usize {
+    let scene = svg::read(text).unwrap();
+    scene.marks().filter(|mark| mark.is_varying()).count()
+}
+
+#[test]
+fn lines_whose_width_varies_are_lines_in_every_file() {
+    let place = Place::new();
+    let text = varying();
+    place.file("a.svg", &text);
+    let picture = verify::render(&text, Size::Scale(4.0), None).unwrap();
+    place.file("a.png", picture.reduced(160, 120).encode_png().unwrap());
+    place.done("check a.svg a.png -q --renderer resvg");
+    // Frozen ones are as they were. Free ones keep their lines, and only colours are fitted.
+    place.done("refine a.svg a.png -o b.svg -q --freeze-base --strokes +1");
+    assert_eq!(varying_in(&place.text("b.svg")), 2);
+    for form in ["plain", "css", "smallest", "powerstroke"] {
+        let kept = "--checkpoint fit.state --checkpoint-every 0.001";
+        place.done(&format!(
+            "refine a.svg a.png -o c.svg -q --strokes +2 --form {form} {kept}"
+        ));
+        let refined = place.text("c.svg");
+        assert_eq!(varying_in(&refined), 2, "{refined}");
+        let seen = agreement(&on_white(&refined), &on_white(&text));
+        assert!(seen > 35.0, "{form} {seen}: {refined}");
+        assert_eq!(refined.contains("original-d"), form == "powerstroke");
+    }
+    for (option, least) in [
+        ("--outline", 45.0),
+        ("--cutout", 35.0),
+        ("--hatch=3px", 15.0),
+    ] {
+        place.done(&["render", "a.svg", "-o", "d.svg", option]);
+        let filled = place.text("d.svg");
+        assert_eq!(varying_in(&filled), 0);
+        let seen = agreement(&on_white(&filled), &on_white(&text));
+        assert!(seen > least, "{option} {seen}");
     }
 }
 

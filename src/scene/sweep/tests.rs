@@ -291,6 +291,27 @@ fn cases() -> Vec<(&'static str, Stroke)> {
 }
 
 #[test]
+fn a_border_has_the_stroke_on_one_side() {
+    for (name, stroke) in cases() {
+        let [outline, border] = [stroke.swept(), stroke.border()].map(|rings| {
+            let lines = rings.iter().flat_map(|ring| ring.lines(0.005));
+            lines.collect::<Vec<_>>()
+        });
+        let discs = union(&stroke);
+        for line in &border {
+            let depth = depth(&discs, line.p0.midpoint(line.p1));
+            assert!(depth < 0.15, "{name}: {line:?} {depth}");
+        }
+        for i in 0..3600 {
+            let p = Point::new(f64::from(i % 60) + 0.037, f64::from(i / 60) + 0.041);
+            if depth(&discs, p).abs() > 0.1 {
+                assert_eq!(is_inside(&border, p), is_inside(&outline, p), "{name}: {p}");
+            }
+        }
+    }
+}
+
+#[test]
 fn an_outline_is_that_of_the_union_of_discs() {
     let mut wrong = Vec::new();
     for (name, stroke) in cases() {
