@@ -10,6 +10,10 @@ use crate::scene::PathPoint;
 
 /// Farthest that a curve is from the samples, px: rasterisers have steps of 1/16 px at best.
 const TOLERANCE: f64 = 0.04;
+/// Largest second difference of a curve's points, px: resvg draws chords in the place of curves, fewer of them than would be exact. Two
+/// drawings have 35.1 and 36.2 dB with any, 36.7 and 38.1 with 2 px, 37.5 and 39.1 with 1 px and 37.7 and 39.4 with 0.5 px, which take
+/// 1.13, 1.25 and 1.4 times the bytes.
+const BEND: f64 = 1.0;
 /// Rounds of finding the parameters of the samples on a curve anew.
 const ROUNDS: usize = 3;
 
@@ -182,11 +186,18 @@ impl<'a> Samples<'a> {
             1 => {
                 let control = meeting([a, b], [leaving, arriving])?;
                 let curve = QuadBez::new(a, control, b);
-                is_near(&curve, places, &mut shares).then(|| vec![PathPoint::off(control)])
+                let is_flat = from + 1 == to || bend([a, control, b]) <= BEND;
+                (is_flat && is_near(&curve, places, &mut shares))
+                    .then(|| vec![PathPoint::off(control)])
             }
             _ => {
                 for _ in 0..ROUNDS {
                     let curve = cubic([a, b], [leaving, arriving], places, &shares)?;
+                    let bends = [[a, curve.p1, curve.p2], [curve.p1, curve.p2, b]].map(bend);
+                    let is_flat = from + 1 == to || bends[0].max(bends[1]) <= BEND;
+                    if !is_flat {
+                        return None;
+                    }
                     if is_near(&curve, places, &mut shares) {
                         return Some([curve.p1, curve.p2].map(PathPoint::cubic).to_vec());
                     }
@@ -231,6 +242,11 @@ fn cubic(
     let most = 3.0 * length(b - a);
     let are_fit = handles.iter().all(|h| (0.0..=most).contains(h));
     are_fit.then(|| CubicBez::new(a, a + handles[0] * leaving, b - handles[1] * arriving, b))
+}
+
+/// The length of the second difference of three points, px.
+fn bend([a, b, c]: [Point; 3]) -> f64 {
+    length(a.to_vec2() - 2.0 * b.to_vec2() + c.to_vec2())
 }
 
 /// True if a curve is near to places; their parameters become those of the places on it that are nearest, about.

@@ -28,6 +28,8 @@ pub(super) const FLAT: f64 = 0.05;
 const REACH: f64 = 4.0;
 /// One and the cosine of the sharpest turn that has a mitred corner: sharper ones are cut off, as SVG does by its limit of 4.
 const SHARPEST: f64 = 0.125;
+/// Largest slope of a radius: a disc that grows faster than the line hides what is before it.
+const STEEPEST: f64 = 0.95;
 /// Directions that differ by less, rad, need no join.
 const STRAIGHT: f64 = 1e-3;
 
@@ -208,8 +210,8 @@ impl Line {
 
     /// The vertices of its outline, as one ring. That of a closed line goes along one side, and back along the other one.
     ///
-    /// A side is the middle moved along its normal, which does not change to first order where the middle turns: only the end that a
-    /// normal has in the derivatives is that of the radius.
+    /// A side is where the discs along the middle touch the border of their union. That changes to first order as the middle and the
+    /// radius there do, and not by the direction in which it lies.
     pub(super) fn outline(&self) -> Vec<Vertex> {
         let owns = own_unknowns(&self.knots).take(self.segments());
         let segments = owns.enumerate().map(|(i, own)| self.middle(i, own));
@@ -227,10 +229,9 @@ impl Line {
                     let ways = [before.ways[before.ways.len() - 1], middle.ways[0]];
                     places.extend(self.join(&middle.vertices[0], ways, side, &middle.radii[0]));
                 }
-                let sides = middle.vertices.iter().zip(&middle.ways).zip(&middle.radii);
-                places.extend(
-                    sides.map(|((at, way), radius)| at.moved(side * normal(*way), radius)),
-                );
+                let sides = middle.vertices.iter().zip(&middle.radii).enumerate();
+                places
+                    .extend(sides.map(|(k, (at, radius))| at.moved(middle.touch(k, side), radius)));
             }
             if self.is_closed {
                 places.extend(places.first().copied());
@@ -247,9 +248,7 @@ impl Line {
                 } else {
                     0
                 };
-                // Out of the line there.
-                let way = -side * middle.ways[at];
-                outline.extend(self.end(&middle.vertices[at], way, &middle.radii[at]));
+                outline.extend(self.end(middle, at, side));
             }
         }
         outline
@@ -281,8 +280,16 @@ impl Line {
                 },
             }
         };
+        let radii: Vec<Radius> = (0..=last).map(radius).collect();
+        let slope = |k: usize| {
+            let [a, b] = [k.saturating_sub(1), (k + 1).min(last)];
+            let length = (vertices[b].at - vertices[a].at).hypot();
+            let slope = (radii[b].value - radii[a].value) / length.max(1e-9);
+            slope.clamp(-STEEPEST, STEEPEST)
+        };
         Middle {
-            radii: (0..=last).map(radius).collect(),
+            slopes: (0..=last).map(slope).collect(),
+            radii,
             vertices,
             ways,
         }
@@ -305,20 +312,37 @@ impl Line {
         }
     }
 
-    /// The end of the line in a direction, from its left to its right.
-    fn end(&self, at: &Vertex, way: Vec2, radius: &Radius) -> Vec<Vertex> {
+    /// The end of the line at a vertex of a segment's middle, from one side to the other.
+    fn end(&self, middle: &Middle, at: usize, side: f64) -> Vec<Vertex> {
         match self.cap {
-            Cap::Round => fan(at, -normal(way), PI, radius),
+            Cap::Round => {
+                // Half a turn, and what the line widens to there.
+                let slope = -side * middle.slopes[at];
+                let lean = math::atan(slope / (1.0 - slope * slope).sqrt());
+                let from = middle.touch(at, side);
+                fan(&middle.vertices[at], from, PI + 2.0 * lean, &middle.radii[at])
+            }
             Cap::Butt => Vec::new(),
         }
     }
 }
 
-/// The middle of a segment as a polyline: its vertices, the directions there, and half the widths.
+/// The middle of a segment as a polyline: its vertices, the directions there, and half the widths with their slopes.
 struct Middle {
     vertices: Vec<Vertex>,
     ways: Vec<Vec2>,
     radii: Vec<Radius>,
+    /// The changes of half the width with the length.
+    slopes: Vec<f64>,
+}
+
+impl Middle {
+    /// The direction in which the disc around vertex `k` touches the border of what the line covers, on one side.
+    fn touch(&self, k: usize, side: f64) -> Vec2 {
+        let slope = self.slopes[k];
+        let across = (1.0 - slope * slope).sqrt();
+        side * across * normal(self.ways[k]) - slope * self.ways[k]
+    }
 }
 
 /// Where a line that ends and one that starts meet, if the end and the start are near each other.
