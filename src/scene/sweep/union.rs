@@ -3,20 +3,32 @@
 use kurbo::Line;
 
 use crate::math::Point;
-use crate::scene::path::is_inside;
+use crate::scene::path::{bounds, is_inside};
 use crate::scene::{Path, PathPoint};
 
 /// Farthest that the polygon is from curves, px.
 const TOLERANCE: f64 = 0.02;
 /// Distance from an edge at which its sides are told, px.
 const BESIDE: f64 = 1e-3;
+/// Most edges that are compared with each other, 0.1 s: a line of 3,000 px along curves has fewer.
+const MOST: usize = 3000;
 
 /// The rings themselves if none of their edges has the area on both sides, or else polygons around it by the nonzero rule.
 pub(super) fn united(rings: Vec<Path>) -> Vec<Path> {
+    let around = bounds(rings.iter().flat_map(Path::hull));
+    let size = around.width().max(around.height());
+    if !size.is_finite() {
+        return rings;
+    }
+    // Curves far larger than a page would have lines without end.
+    let tolerance = TOLERANCE.max(1e-6 * size);
     let lines: Vec<Line> = rings
         .iter()
-        .flat_map(|ring| ring.lines(TOLERANCE))
+        .flat_map(|ring| ring.lines(tolerance))
         .collect();
+    if lines.len() > MOST {
+        return rings;
+    }
     let parts: Vec<Line> = (0..lines.len()).flat_map(|i| cut(&lines, i)).collect();
     let is_border = |part: &&Line| {
         let way = part.p1 - part.p0;
