@@ -148,6 +148,12 @@ impl<'a> Choice<'a> {
         let mut chosen = self.chosen(&fills, lines, won, price).ok()?;
         let has_ink = self.add_ink(&mut chosen, &placing, &fills);
         // What colours tell badly is to be fitted, and so are strokes that no region tells.
+        if has_ink {
+            // What lies on top of regions that lines of ink draw was laid along parts of those.
+            let strokes = chosen.strokes.iter_mut().zip(&self.votes);
+            let orphans = strokes.filter(|(_, votes)| votes.is_empty());
+            orphans.for_each(|(stroke, _)| *stroke = None);
+        }
         let is_told = |(votes, stroke): (&Votes, &Option<_>)| !votes.is_empty() || stroke.is_none();
         let is_sure = self.votes.iter().zip(&chosen.strokes).all(is_told)
             && placing.is_sure(&fills, |fill| {
