@@ -146,7 +146,8 @@ impl<'a> Choice<'a> {
         self.keep_pens(&mut lines, &fills);
         let won = lines.iter().map(Option::is_some).collect();
         let mut chosen = self.chosen(&fills, lines, won, price).ok()?;
-        let has_ink = self.add_ink(&mut chosen, &placing, &fills);
+        // Damage makes many lines of what is none.
+        let has_ink = is_clean && self.add_ink(&mut chosen, &placing, &fills);
         // What colours tell badly is to be fitted, and so are strokes that no region tells.
         if has_ink {
             // What lies on top of regions that lines of ink draw was laid along parts of those.
@@ -370,7 +371,11 @@ impl<'a> Choice<'a> {
             let fills = shape.into_iter().filter_map(|region| open.get(&region));
             fills.copied().collect::<Vec<_>>()
         });
-        let shapes: Vec<Vec<&Fill<Ring>>> = shapes.collect();
+        let is_large = |fills: &Vec<&Fill<Ring>>| {
+            let sizes = fills.iter().map(|fill| fill.size);
+            sizes.sum::<f32>() > TIP
+        };
+        let shapes: Vec<Vec<&Fill<Ring>>> = shapes.filter(is_large).collect();
         let drawn = shapes.par_iter().map(|fills| placing.ink(fills));
         let drawn: Vec<Option<Vec<edge::Line>>> = drawn.collect();
         // Lines that are not long are lines if no area has their colour.

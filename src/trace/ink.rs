@@ -51,9 +51,12 @@ pub(super) fn middles(field: &Field) -> Option<Vec<Middle>> {
     let length: f64 = lengths.sum();
     let covered: f64 = field.values.iter().map(|share| f64::from(*share)).sum();
     let radius = 0.5 * covered / length;
-    (length >= SLENDER * radius * middles.len() as f64).then_some(middles)
+    let is_slender = length >= SLENDER * radius * middles.len() as f64;
+    (is_slender && middles.len() <= MOST).then_some(middles)
 }
 
+/// Most lines that are described together, as each is tried with each other one: 386 of a crayon took minutes. A guess.
+const MOST: usize = 64;
 /// Least length of lines in the mean, in units of their mean radius. A guess: a disc has none, a square 0 to 4.
 const SLENDER: f64 = 8.0;
 
