@@ -188,6 +188,26 @@ def test_strokes_are_a_sequence_with_columns(drawing: strokefit.Drawing) -> None
         strokes[0].points[0] = 1
 
 
+def test_strokes_whose_width_varies_have_radii() -> None:
+    svg = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:strokefit="https://github.com/strokefit/strokefit"
+width="56" height="40" viewBox="0 0 56 40">
+<rect width="56" height="40" fill="#ffffff"/>
+<g id="stage-1" fill="none" stroke-linecap="round">
+<path d="M4 18l24 -2l0 8l-24 -2z" fill="#204060" strokefit:line="M4 20H28Q40 20 40 32" strokefit:widths="4 8 2"/>
+<path d="M36 6L50 6" stroke="#108040" stroke-width="3"/>
+</g>
+</svg>"""
+    drawing = strokefit.refine(svg, strokefit.render(svg, background="#ffffff"), strokes=2, preset="draft")
+    brush, line = drawing.strokes
+    assert len(drawing.areas) == 0 and brush.width == 8 and line.radii is None
+    assert brush.radii is not None and brush.radii.tolist() == [2, 4, 2.5, 1]
+    assert brush.on_path.tolist() == [True, True, False, True]
+    assert drawing.strokes.radii.tolist() == [2, 4, 2.5, 1, 1.5, 1.5]
+    assert (pickle.loads(pickle.dumps(drawing)).strokes.radii == drawing.strokes.radii).all()
+    with pytest.warns(UserWarning, match="1 of the strokes of .* width that varies"):
+        drawing.scene
+
+
 @pytest.fixture(scope="module")
 def filled() -> strokefit.Drawing:
     """A frame, a line and a drop, back to front, as a drawing has them."""
