@@ -22,7 +22,7 @@ pub struct Timing {
 /// The scene with `precision` decimals and an element for each mark. The marks of each of `parts` are in
 /// a group that appears at its time; the first group is visible from the start. Parts are consecutive ranges
 /// of the marks, back to front. Until the next part appears, a stroke of several pieces, or of a curve, is drawn along
-/// its length, and an area fades in. The animation repeats for ever.
+/// its length, one whose width varies below a mask, and an area fades in. The animation repeats for ever.
 ///
 /// A part that crosses the end of a stage is in two groups, which appear together.
 pub fn write_animated(
@@ -273,7 +273,9 @@ mod tests {
             "{text}"
         );
         let draw = |text: &str| render(text, Size::Scale(3.0), None).unwrap();
-        assert!(draw(&text) == draw(&write(&scene, &WriteOptions::default())));
+        // A mask rounds once more, to 8 bits.
+        let plain = draw(&write(&scene, &WriteOptions::default()));
+        assert!(crate::metrics::psnr(&draw(&text), &plain).unwrap() > 50.0);
     }
 
     #[test]
