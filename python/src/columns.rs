@@ -11,14 +11,15 @@ use strokefit::scene::{Area, Mark, Path, PathPoint, PointKind, Scene, Stroke};
 use crate::failure::Failure;
 
 /// Points (m × 2, px), which of them are on their path (m), their kinds (m), where each stroke's points begin (n + 1), which
-/// paths are closed (n), widths (n, px), colours (n × 3), opacities (n), layers (n, from 0) and places among all marks (n,
-/// from 0), for n strokes of m points.
+/// paths are closed (n), widths (n, px), half the width at each point (m, px), colours (n × 3), opacities (n), layers (n, from 0)
+/// and places among all marks (n, from 0), for n strokes of m points.
 pub(crate) type StrokeColumns<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray1<u8>>,
     Bound<'py, PyArray1<i64>>,
     Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<f32>>,
     Bound<'py, PyArray1<f32>>,
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<f32>>,
@@ -90,7 +91,7 @@ pub(crate) fn marks<'py>(py: Python<'py>, scene: &Scene) -> PyResult<MarkColumns
 
 /// The strokes of `scene`, back to front.
 pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeColumns<'py>> {
-    let scene = scene.clone().filled();
+    let scene = without_bands(scene);
     let (strokes, layers, order) = placed(&scene, Mark::as_stroke);
     let strokes = || strokes.iter().copied();
     let points = || strokes().flat_map(|stroke| stroke.path.points());
@@ -104,6 +105,12 @@ pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeCol
         ),
         column(py, strokes().map(|stroke| stroke.path.is_closed())),
         column(py, strokes().map(|stroke| 2.0 * stroke.radius as f32)),
+        column(
+            py,
+            strokes()
+                .flat_map(|stroke| stroke.radii_of_points())
+                .map(|r| r as f32),
+        ),
         rows(py, strokes().map(|stroke| stroke.color))?,
         column(py, strokes().map(|stroke| stroke.opacity)),
         PyArray1::from_vec(py, layers),
@@ -113,7 +120,7 @@ pub(crate) fn strokes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<StrokeCol
 
 /// The areas of `scene`, back to front.
 pub(crate) fn areas<'py>(py: Python<'py>, scene: &Scene) -> PyResult<AreaColumns<'py>> {
-    let scene = scene.clone().filled();
+    let scene = without_bands(scene);
     let (areas, layers, order) = placed(&scene, Mark::as_area);
     let areas = || areas.iter().copied();
     let rings = || areas().flat_map(|area: &Area| &area.rings);
@@ -129,6 +136,16 @@ pub(crate) fn areas<'py>(py: Python<'py>, scene: &Scene) -> PyResult<AreaColumns
         PyArray1::from_vec(py, layers),
         PyArray1::from_vec(py, order),
     ))
+}
+
+/// The scene with an area in the place of each stroke with square ends.
+fn without_bands(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let marks = scene.stages.iter_mut().flat_map(|stage| &mut stage.marks);
+    for mark in marks.filter(|mark| mark.is_butt()) {
+        *mark = mark.clone().filled();
+    }
+    scene
 }
 
 /// Marks of one kind, with their layers and their places among all marks, both from 0.

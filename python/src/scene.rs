@@ -87,6 +87,14 @@ pub(crate) fn read<'py>(
         let category = py.get_type::<PyUserWarning>();
         PyErr::warn(py, &category, &CString::new(message)?, 2)?;
     }
+    let varying = scene.marks().filter(|mark| mark.is_varying()).count();
+    if varying > 0 {
+        let message = format!(
+            "{varying} of the strokes of {name} have a width that varies, which marks in arrays do not: they are areas instead"
+        );
+        let category = py.get_type::<PyUserWarning>();
+        PyErr::warn(py, &category, &CString::new(message)?, 2)?;
+    }
     let layers = scene.stages.iter().zip(0..);
     let layers = layers.flat_map(|(stage, layer)| stage.marks.iter().map(move |_| layer));
     let layers = PyArray1::from_iter(py, layers.collect::<Vec<i64>>());

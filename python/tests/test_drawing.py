@@ -188,6 +188,32 @@ def test_strokes_are_a_sequence_with_columns(drawing: strokefit.Drawing) -> None
         strokes[0].points[0] = 1
 
 
+def test_strokes_whose_width_varies_have_radii() -> None:
+    outline = (
+        "M386.25 177.17l-22.48 19.48q-8.63 7.83-17.79 15-9.13 7.15-18.75 13.63-9.6 6.47-19.65 12.23-10.05 5.77-20.49 10.8"
+        "l-19.99 7.75a3.76 3.76 0 0 0-2.1 4.97 3.76 3.76 0 0 0 5.03 1.94l19.83-9.16q10.45-5.48 20.47-11.68 10-6.2 19.53-13.09"
+        " 9.52-6.88 18.52-14.43 8.99-7.55 17.46-15.77l20.75-21.31a0.25 0.25 0 0 0-0.34-0.36z"
+    )
+    line = "M386.41 177.36l-21.65 20.43c-22.75 21.34-48.46 39.28-76.33 53.29l-19.97 8.48"
+    svg = f"""<svg xmlns="http://www.w3.org/2000/svg" width="400" height="400" viewBox="0 0 400 400">
+<rect width="400" height="400" fill="#ffffff"/>
+<g id="stage-1" fill="none" stroke-linecap="round" xmlns:strokefit="urn:strokefit:line">
+<path d="{outline}" fill="#000000" strokefit:line="{line}" strokefit:widths="0.5 3.02 6.16 7.51"/>
+<path d="M36 6L50 6" stroke="#108040" stroke-width="3"/>
+</g>
+</svg>"""
+    drawing = strokefit.refine(svg, strokefit.render(svg, background="#ffffff"), strokes=2, preset="draft")
+    brush, even = drawing.strokes
+    assert len(drawing.areas) == 0 and even.radii is None and brush.radii is not None
+    assert brush.on_path.tolist() == [True, True, False, False, True, True]
+    assert brush.radii.tolist() == pytest.approx([0.25, 1.51, 2.0333, 2.5567, 3.08, 3.755], abs=1e-3)
+    assert brush.width == pytest.approx(7.51) and brush.points[0].tolist() == pytest.approx([386.41, 177.36])
+    assert drawing.strokes.radii.tolist() == [*brush.radii.tolist(), 1.5, 1.5]
+    assert (pickle.loads(pickle.dumps(drawing)).strokes.radii == drawing.strokes.radii).all()
+    with pytest.warns(UserWarning, match="1 of the strokes of .* width that varies"):
+        strokefit.Scene.read(svg)
+
+
 @pytest.fixture(scope="module")
 def filled() -> strokefit.Drawing:
     """A frame, a line and a drop, back to front, as a drawing has them."""

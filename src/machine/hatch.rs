@@ -39,13 +39,24 @@ impl std::str::FromStr for Hatch {
 }
 
 /// The scene with the visible parts of its areas filled with lines `spacing` px apart, of a `pen` that is so many px wide:
-/// one along their borders, and straight ones at an angle. Strokes stay, and lie on top. The background is paper, which
-/// stays bare; so does an area of its colour.
+/// one along their borders, and straight ones at an angle. Strokes stay, and lie on top; one whose width varies is filled if it is
+/// wider than the pen anywhere, and is drawn along its middle if not. The background is paper, which stays bare; so does an area of
+/// its colour.
 ///
 /// # Errors
 /// As [`cut_out`](super::cut_out).
 pub fn hatched(scene: &Scene, spacing: f64, pen: f64, degrees: f64) -> Result<Scene> {
-    let scene = &scene.without_shadows().filled();
+    let mut scene = scene.without_shadows();
+    let marks = scene.stages.iter_mut().flat_map(|stage| &mut stage.marks);
+    for mark in marks {
+        match mark {
+            Mark::Stroke(stroke) if stroke.is_varying() && 2.0 * stroke.radius <= pen => {
+                (stroke.radius, stroke.radii) = (0.5 * pen, Vec::new());
+            }
+            mark => *mark = mark.clone().filled(),
+        }
+    }
+    let scene = &scene;
     let paper = scene.background.map(|c| c.map(quantum));
     let mut stages = Vec::new();
     for area in areas(scene)? {

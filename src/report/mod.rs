@@ -23,7 +23,7 @@ use crate::restore::Damage;
 pub use check::{AgainstResvg, CheckReport, NotDrawn, RendererEntry};
 pub use fit::{BaseEntry, Event, FitReport, PhaseEntry, Run};
 pub use judged::{Judged, OnFocus};
-pub use scene::{MarkRecord, SceneRecord, ShadeRecord};
+pub use scene::{LineRecord, MarkRecord, MoreRecord, SceneRecord, ShadeRecord};
 pub use usage::Usage;
 
 /// Version of the records' layout.

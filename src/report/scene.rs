@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::math;
-use crate::scene::{Area, Mark, Path, PathPoint, PointKind, Rgb, Scene, Shade, ShadeStop};
+use crate::scene::{Area, Mark, Path, PathPoint, PointKind, Rgb, Scene, Shade, ShadeStop, Stroke};
 
 /// A scene in numbers and colours that a page can hand to a canvas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,7 +27,8 @@ pub struct SceneRecord {
 
 /// In JSON a list of five: the points x, y, x, y, … and the radius, px, 0 for an area; the colour `#rrggbb`; the opacity,
 /// 0..1; the kinds of the points, `o` on the path and `c` for a control point, with `z` after the points of a closed path,
-/// and so after those of each ring of an area. An area with a gradient has that as a sixth.
+/// and so after those of each ring of an area. An area with a gradient has that as a sixth, and an area that is the outline of a line
+/// that line.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MarkRecord(
     pub Vec<f32>,
@@ -35,8 +36,29 @@ pub struct MarkRecord(
     pub String,
     pub f32,
     pub String,
-    #[serde(skip_serializing_if = "Option::is_none")] pub Option<ShadeRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")] pub Option<MoreRecord>,
 );
+
+/// What some areas have besides.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum MoreRecord {
+    /// The gradient that it is filled with.
+    Shade(ShadeRecord),
+    /// The line whose width varies that it is the outline of.
+    Line(LineRecord),
+}
+
+/// A line whose width varies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LineRecord {
+    /// Its points x, y, x, y, …, px.
+    pub points: Vec<f32>,
+    /// Their kinds, as those of a [`MarkRecord`].
+    pub kinds: String,
+    /// The width at each of them, px.
+    pub widths: Vec<f32>,
+}
 
 impl From<&Scene> for SceneRecord {
     fn from(scene: &Scene) -> Self {
@@ -83,8 +105,10 @@ impl From<&Shade> for ShadeRecord {
 
 impl From<&Mark> for MarkRecord {
     fn from(mark: &Mark) -> Self {
-        // A canvas has one kind of ends: what has square ones is shown as an area.
+        let line = mark.as_stroke().filter(|stroke| stroke.is_varying());
+        // A canvas has one width and one kind of ends: a line with others is shown as an area.
         let mark = mark.clone().filled();
+        let shade = mark.shade().map(ShadeRecord::from);
         let points = mark.paths().iter().flat_map(Path::points);
         Self(
             points.flat_map(|p| math::xy(p.at)).collect(),
@@ -92,8 +116,26 @@ impl From<&Mark> for MarkRecord {
             css(mark.color()),
             mark.opacity(),
             mark.paths().iter().map(kinds).collect(),
-            mark.shade().map(ShadeRecord::from),
+            match line {
+                Some(line) => Some(MoreRecord::Line(LineRecord::from(line))),
+                None => shade.map(MoreRecord::Shade),
+            },
         )
+    }
+}
+
+impl From<&Stroke> for LineRecord {
+    fn from(line: &Stroke) -> Self {
+        let points = line.path.points().iter();
+        Self {
+            points: points.flat_map(|p| math::xy(p.at)).collect(),
+            kinds: kinds(&line.path),
+            widths: line
+                .radii_of_points()
+                .iter()
+                .map(|r| 2.0 * *r as f32)
+                .collect(),
+        }
     }
 }
 
@@ -122,7 +164,7 @@ fn css(color: Rgb) -> String {
 mod tests {
     use super::*;
     use crate::math::Point;
-    use crate::scene::{Axis, Cap, Stage, Stroke};
+    use crate::scene::{Axis, Cap, Stage};
 
     #[test]
     fn a_page_reads_points_radius_colour_opacity_and_kinds() {
@@ -176,6 +218,19 @@ mod tests {
         let shade_json = r#"{"axis":[0.0,0.0,8.0,0.0],"stops":[[0.0,"rgb(0 0 0 / 1)"],[1.0,"rgb(255 255 255 / 1)"]]}"#;
         let with_shade = expected.replace("z\"]", &format!("z\",{shade_json}]"));
         assert_eq!(json(Area { shade, ..area }), with_shade);
+    }
+
+    #[test]
+    fn a_page_reads_the_line_of_an_outline() {
+        let path = Path::line((1.0, 2.0).into(), (9.0, 2.0).into());
+        let line = Stroke::varying(path, vec![0.0, 1.5], [0.0; 3], 1.0).unwrap();
+        let json = serde_json::to_string(&MarkRecord::from(&Mark::from(line))).unwrap();
+        let (outline, line) = json.split_once(",{").unwrap();
+        assert!(outline.contains(r##",0.0,"#000000",1.0,"##), "{outline}");
+        assert_eq!(
+            line,
+            r#""points":[1.0,2.0,9.0,2.0],"kinds":"oo","widths":[0.0,3.0]}]"#
+        );
     }
 
     #[test]

@@ -79,6 +79,33 @@ impl Stroke {
         !self.radii.is_empty()
     }
 
+    /// Half the width at each point of the path, px: at the control points of curves and the middles of arcs that of the place on the
+    /// line that is nearest in the parameter.
+    pub fn radii_of_points(&self) -> Vec<f64> {
+        let points = self.path.points();
+        if !self.is_varying() {
+            return vec![self.radius; points.len()];
+        }
+        let first = points.iter().position(PathPoint::is_on).unwrap_or(0);
+        let mut kinds: Vec<PointKind> = points.iter().map(|p| p.kind).collect();
+        kinds.rotate_left(first);
+        let between = kinds.split(|kind| *kind == PointKind::On).skip(1);
+        let mut radii = Vec::with_capacity(points.len());
+        for (i, run) in between.enumerate() {
+            let [from, to] = [i, i + 1].map(|k| self.radii[k % self.radii.len()]);
+            // A control point of a quadratic curve is at the middle of its own curve.
+            let share = |(j, kind): (usize, &PointKind)| match kind {
+                PointKind::Quad => (j as f64 + 0.5) / run.len() as f64,
+                _ => (j + 1) as f64 / (run.len() + 1) as f64,
+            };
+            let shares = run.iter().enumerate().map(share);
+            radii.push(from);
+            radii.extend(shares.map(|share| (1.0 - share) * from + share * to));
+        }
+        radii.rotate_right(first);
+        radii
+    }
+
     /// The border of what a stroke whose width varies covers: its outline without edges that have the stroke on both sides, as a line
     /// that crosses itself or turns sharply has them.
     pub(crate) fn border(&self) -> Vec<Path> {

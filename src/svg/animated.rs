@@ -3,7 +3,11 @@
 
 use std::ops::Range;
 
-use super::{Form, WriteOptions, dialect, write};
+use kurbo::Shape;
+
+use super::dialect::{self, Unit};
+use super::path::{self, Kind};
+use super::{Form, WriteOptions, write};
 use crate::scene::{Area, Cap, Mark, Scene, Stroke, quantum};
 
 /// Durations in an animated drawing.
@@ -18,7 +22,7 @@ pub struct Timing {
 /// The scene with `precision` decimals and an element for each mark. The marks of each of `parts` are in
 /// a group that appears at its time; the first group is visible from the start. Parts are consecutive ranges
 /// of the marks, back to front. Until the next part appears, a stroke of several pieces, or of a curve, is drawn along
-/// its length, and an area fades in. The animation repeats for ever.
+/// its length, one whose width varies below a mask, and an area fades in. The animation repeats for ever.
 ///
 /// A part that crosses the end of a stage is in two groups, which appear together.
 pub fn write_animated(
@@ -58,10 +62,8 @@ pub fn write_animated(
             marks += 1;
         }
         match shapes.next_if(|_| is_mark(line)) {
-            Some(mark) if mark.is_varying() => {
-                if let Mark::Area(area) = mark.clone().filled() {
-                    groups.push(&clock.fading(line, &area, part));
-                }
+            Some(Mark::Stroke(stroke)) if stroke.is_varying() => {
+                groups.push(&clock.growing(line, stroke, marks, part));
             }
             Some(Mark::Stroke(stroke)) if is_long(stroke) => {
                 groups.push(&clock.along(line, part));
@@ -132,6 +134,33 @@ impl Clock {
         let values = "values=\"0 1;0 1;1 0;1 0\"";
         let animation = self.animation("stroke-dasharray", values, &self.times(part));
         format!("{open} pathLength=\"1\">{animation}{close}")
+    }
+
+    /// The `element` of a line whose width varies, mark `number`, of part `part`, with an animation that draws it: a pen that is wider
+    /// than the line anywhere uncovers it along its middle.
+    fn growing(&self, element: &str, line: &Stroke, number: usize, part: usize) -> String {
+        let (open, _) = tags(element);
+        let d = path::data([&line.path], Kind::Line, Unit::PX);
+        let width = (2.0 * line.radius).ceil() + 2.0;
+        let pen = format!(
+            "<path d=\"{d}\" fill=\"none\" stroke=\"#fff\" stroke-width=\"{width}\" stroke-linecap=\"round\" \
+             stroke-linejoin=\"round\"/>"
+        );
+        let page = line
+            .path
+            .bezier()
+            .bounding_box()
+            .inflate(width, width)
+            .expand();
+        format!(
+            "<mask id=\"line-{number}\" maskUnits=\"userSpaceOnUse\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\">{}</mask>\
+             {open} mask=\"url(#line-{number})\"/>",
+            page.x0,
+            page.y0,
+            page.width(),
+            page.height(),
+            self.along(&pen, part)
+        )
     }
 
     /// The `element` of an area of part `part`, with an animation that fades it in.
@@ -225,6 +254,28 @@ mod tests {
         assert_eq!(times, ["0.1000", "0.1000", "0.2000", "0.3000"]);
         assert_eq!(text.matches("dur=\"1000ms\"").count(), 4);
         assert_eq!(text.matches("<path").count(), 7);
+    }
+
+    #[test]
+    fn a_line_whose_width_varies_is_drawn_along_its_middle() {
+        let points = [[2.0, 2.0], [9.0, 1.0], [5.0, 9.0]]
+            .map(|[x, y]: [f64; 2]| PathPoint::on((x, y).into()));
+        let path = Path::new(points.into(), false).unwrap();
+        let line = Stroke::varying(path, vec![0.0, 1.5, 1.0], [0.0; 3], 1.0).unwrap();
+        let scene = Scene {
+            stages: vec![[Mark::from(line), stroke(3).into()].into_iter().collect()],
+            ..Scene::empty(12, 10, Some([1.0; 3]))
+        };
+        let text = write_animated(&scene, &[0..1, 1..2], TIMING, 2);
+        assert_eq!(text.matches("stroke-dasharray").count(), 1);
+        assert!(
+            text.contains("d=\"M2 2L9 1 5 9\" fill=\"none\" stroke=\"#fff\" stroke-width=\"5\""),
+            "{text}"
+        );
+        let draw = |text: &str| render(text, Size::Scale(3.0), None).unwrap();
+        // A mask rounds once more, to 8 bits.
+        let plain = draw(&write(&scene, &WriteOptions::default()));
+        assert!(crate::metrics::psnr(&draw(&text), &plain).unwrap() > 50.0);
     }
 
     #[test]

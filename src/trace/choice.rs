@@ -138,8 +138,7 @@ impl<'a> Choice<'a> {
         let is_clean = self.flat.tracing.doubt.most() == 0.0;
         // The tips of lines are no shapes.
         let is_shape = |region: u32| self.flat.size(region) > TIP;
-        let has_to_be_sure =
-            |region: u32| is_clean && is_shape(region) && !self.is_grouped(region);
+        let has_to_be_sure = |region: u32| is_clean && is_shape(region) && !self.is_grouped(region);
         let fills = placing.fills(has_to_be_sure)?;
         let lines = |group: &Group| self.lines(group, &placing, &fills);
         let mut lines: Vec<Option<Vec<Stroke>>> = self.groups.par_iter().map(lines).collect();
@@ -349,20 +348,14 @@ impl<'a> Choice<'a> {
     }
 
     /// Draws shapes that no strokes draw by lines of varying width, if these have a shorter description.
-    fn add_ink(
-        &self,
-        chosen: &mut Chosen,
-        placing: &Placing<'_>,
-        fills: &[Fill<Ring>],
-    ) -> bool {
+    fn add_ink(&self, chosen: &mut Chosen, placing: &Placing<'_>, fills: &[Fill<Ring>]) -> bool {
         let open: BTreeMap<u32, &Fill<Ring>> = fills
             .iter()
             .filter(|fill| !chosen.is_stroked[fill.region as usize] && !fill.has_shades())
             .map(|fill| (fill.region, fill))
             .collect();
-        let is_one = |a: u32, b: u32| {
-            self.flat.label(a) == self.flat.label(b) || placing.is_tip_of(b, a)
-        };
+        let is_one =
+            |a: u32, b: u32| self.flat.label(a) == self.flat.label(b) || placing.is_tip_of(b, a);
         // Larger ones first, as tips have not their colour.
         let mut regions: Vec<u32> = open.keys().copied().collect();
         regions.sort_by(|a, b| self.flat.size(*b).total_cmp(&self.flat.size(*a)));

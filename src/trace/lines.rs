@@ -134,7 +134,9 @@ impl Graph {
     pub(super) fn crossings(&self) -> impl Iterator<Item = Spot> + '_ {
         let degrees = self.degrees();
         let nodes = self.nodes.iter().zip(degrees);
-        nodes.filter(|(_, degree)| *degree > 2).map(|(node, _)| *node)
+        nodes
+            .filter(|(_, degree)| *degree > 2)
+            .map(|(node, _)| *node)
     }
 
     /// Makes one node of both ends of an edge, with a disc of this radius at least.

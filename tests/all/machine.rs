@@ -193,6 +193,35 @@ fn hatching_fills_areas_with_lines() {
     assert!(seen > 18.0, "{seen}");
 }
 
+#[test]
+fn a_line_whose_width_varies_is_drawn_once_by_a_pen_that_covers_it() {
+    let path = Path::line((10.0, 20.0).into(), (90.0, 20.0).into());
+    let line = Stroke::varying(path.clone(), vec![1.0, 3.0], [0.0; 3], 1.0).unwrap();
+    let scene = Scene {
+        stages: vec![Stage::from_iter([line])],
+        ..Scene::empty(100, 40, None)
+    };
+    let by = |pen| machine::hatched(&scene, pen, pen, 45.0).unwrap();
+    let once = by(6.0);
+    let drawn: Vec<_> = once
+        .strokes()
+        .map(|s| (&s.path, s.radius, s.is_varying()))
+        .collect();
+    assert_eq!(drawn, [(&path, 3.0, false)]);
+    assert!(by(2.0).strokes().count() > 2);
+    // A DXF has its middle, and a cutter its outline.
+    let dxf = machine::dxf(&Sheet {
+        scene: &scene,
+        width: None,
+    });
+    let lines = dxf.lines().filter(|line| *line == "AcDbLine").count();
+    assert_eq!(lines, 1);
+    let [cut] = sizes(&machine::cut_out(&scene).unwrap())[..] else {
+        panic!("one area");
+    };
+    assert!((cut - 336.0).abs() < 3.0, "{cut}");
+}
+
 /// The standard output of a program; `None`, and a word on it, if it is missing here.
 fn output(program: &str, args: &[impl AsRef<OsStr>], place: &Place) -> Option<String> {
     match place.command(program).args(args).output() {

@@ -48,7 +48,7 @@ export interface Options {
   /** Only these widths of strokes: lengths such as `0.3mm,0.8mm` on a page of a `width`, or numbers in px. */
   pens?: string;
   /** What an element of the SVG holds; with `css`, colours and widths are in classes of a style sheet. */
-  form?: "plain" | "smallest" | "css" | "outlines";
+  form?: "plain" | "smallest" | "css" | "powerstroke" | "outlines";
   /** What a layer of the SVG holds. */
   group?: "stage" | "color" | "object";
   /** In which order the strokes of a layer come: as they were fitted, or with little travel of a pen between them. */

@@ -17,6 +17,7 @@ _StrokeColumns = tuple[
     NDArray[np.float32],
     NDArray[np.float32],
     NDArray[np.float32],
+    NDArray[np.float32],
     NDArray[np.int64],
     NDArray[np.int64],
 ]

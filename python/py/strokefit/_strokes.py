@@ -29,7 +29,7 @@ class Stroke(NamedTuple):
     on_path: NDArray[np.bool_]
     #: Whether the last point is joined to the first.
     closed: bool
-    #: In px.
+    #: In px; where the width varies, the largest.
     width: float
     #: Red, green and blue, 0..1, sRGB-encoded.
     color: tuple[float, float, float]
@@ -38,6 +38,9 @@ class Stroke(NamedTuple):
     #: 0 for each of the n points that is on the path, 1 for the control point of a quadratic Bézier curve, 2 for one of the two
     #: of a cubic one, 3 for a point that a circular arc goes through. If None, there is neither, and `on_path` says all. Read-only.
     kinds: Optional[NDArray[np.uint8]] = None
+    #: Half the width at each of the n points, px, if it varies: linear between the points on the path, and at the others that of the
+    #: curve beside them. If None, the stroke has one width. Read-only.
+    radii: Optional[NDArray[np.float32]] = None
 
     def flattened(self, tolerance: float = 0.1) -> NDArray[np.float32]:
         """The centre line as the corners of a polyline at most `tolerance` px away from it, m × 2, px.
@@ -81,8 +84,10 @@ class Strokes(Columns[Stroke]):
     starts: NDArray[np.int64]
     #: Which of the n paths are closed.
     closed: NDArray[np.bool_]
-    #: n widths, px.
+    #: n widths, px; of strokes whose width varies the largest.
     widths: NDArray[np.float32]
+    #: Half the width at each of the m points, px; the same at all points of a stroke of one width.
+    radii: NDArray[np.float32]
     #: n × 3, 0..1, sRGB-encoded.
     colors: NDArray[np.float32]
     #: n opacities, 0..1.
@@ -95,7 +100,7 @@ class Strokes(Columns[Stroke]):
     def __init__(self, columns: _StrokeColumns) -> None:
         self._freeze(columns)
         self.points, self.on_path, self.kinds, self.starts, self.closed = columns[:5]
-        self.widths, self.colors, self.opacities, self.layers, self.order = columns[5:]
+        self.widths, self.radii, self.colors, self.opacities, self.layers, self.order = columns[5:]
 
     def __len__(self) -> int:
         return len(self.widths)
@@ -111,9 +116,10 @@ class Strokes(Columns[Stroke]):
             color=(red, green, blue),
             opacity=float(self.opacities[i]),
             kinds=self.kinds[own] if (self.kinds[own] > 1).any() else None,
+            radii=self.radii[own] if (self.radii[own] != self.radii[own][0]).any() else None,
         )
 
     def __reduce__(self) -> tuple[type[Strokes], tuple[_StrokeColumns]]:
         paths = (self.points, self.on_path, self.kinds, self.starts, self.closed)
-        styles = (self.widths, self.colors, self.opacities, self.layers, self.order)
+        styles = (self.widths, self.radii, self.colors, self.opacities, self.layers, self.order)
         return Strokes, ((*paths, *styles),)

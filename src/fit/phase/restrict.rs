@@ -40,6 +40,7 @@ use crate::fit::edits::{Room, TRIALS, apply_priced, choose, drop_marks};
 use crate::fit::order::Outcome;
 use crate::fit::run::session::Session;
 use crate::render::StrokeRef;
+use crate::scene::Marks;
 use crate::svg::Group;
 
 /// Gives the strokes the colours and widths that the file may have.
@@ -62,6 +63,9 @@ pub(in crate::fit) fn restrict(session: &mut Session<'_>) -> Result<Outcome> {
     let inks = inks::run(session);
     if !session.drawing.is_placed() {
         forms::run(session)?;
+    }
+    if session.config.marks() == Marks::Areas {
+        forms::fill_bands(&mut session.drawing);
     }
     let mut ties = share_within_bytes(session);
     ties.extend(inks::ties(&session.drawing, &inks));

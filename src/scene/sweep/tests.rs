@@ -336,3 +336,29 @@ fn an_outline_is_that_of_the_union_of_discs() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+#[test]
+fn points_off_the_path_have_the_radius_of_the_curve_beside_them() {
+    let arc = PathPoint::arc((5.0, 3.0).into());
+    let points = [
+        on(0.0, 0.0),
+        off(1.0, 3.0),
+        off(3.0, 3.0),
+        on(4.0, 2.0),
+        arc,
+        on(6.0, 2.0),
+    ];
+    let open = stroke(&points, false, &[0.0, 4.0, 2.0]);
+    assert_eq!(open.radii_of_points(), [0.0, 1.0, 3.0, 4.0, 3.0, 2.0]);
+    let closed = stroke(
+        &[off(0.0, 0.0), on(4.0, 0.0), on(4.0, 4.0)],
+        true,
+        &[1.0, 3.0],
+    );
+    assert_eq!(closed.radii_of_points(), [2.0, 1.0, 3.0]);
+    let even = Stroke {
+        radii: Vec::new(),
+        ..open
+    };
+    assert_eq!(even.radii_of_points(), [4.0; 6]);
+}

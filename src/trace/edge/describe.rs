@@ -398,9 +398,7 @@ fn around(
         // The mean of both segments; an end has one.
         let before = &spans[chain[(k + chain.len() - 1) % chain.len()]];
         let radius = match [before.halves, spans[span].halves] {
-            [Some(a), Some(b)] if joint.ends[0] == joint.ends[1] => {
-                0.5 * (a.ends[1] + b.ends[0])
-            }
+            [Some(a), Some(b)] if joint.ends[0] == joint.ends[1] => 0.5 * (a.ends[1] + b.ends[0]),
             [_, halves] => halves.map_or(0.0, |halves| halves.ends[0]),
         };
         if joint.ends[0] != joint.ends[1]

@@ -320,7 +320,12 @@ impl Line {
                 let slope = -side * middle.slopes[at];
                 let lean = math::atan(slope / (1.0 - slope * slope).sqrt());
                 let from = middle.touch(at, side);
-                fan(&middle.vertices[at], from, PI + 2.0 * lean, &middle.radii[at])
+                fan(
+                    &middle.vertices[at],
+                    from,
+                    PI + 2.0 * lean,
+                    &middle.radii[at],
+                )
             }
             Cap::Butt => Vec::new(),
         }

@@ -8,8 +8,8 @@ use super::super::areas::{LEVEL, Pixel, away};
 use super::super::contour::Field;
 use super::super::edge::{self, Ring};
 use super::super::ink;
-use super::compound::{self, Fill};
 use super::colors::CANVAS;
+use super::compound::{self, Fill};
 use super::mixtures::mixed;
 use super::regions::{Region, Regions};
 use super::stack::Layer;
@@ -166,9 +166,7 @@ impl<'a> Placing<'a> {
         let ids: Vec<u32> = fills.iter().map(|fill| fill.region).collect();
         let is_own = flat.members(&ids);
         // 1. The box of all, with what may be too pale to be one of them.
-        let own = ids
-            .iter()
-            .flat_map(|&r| &regions.list[r as usize].members);
+        let own = ids.iter().flat_map(|&r| &regions.list[r as usize].members);
         let (mut low, mut high) = (size, [0; 2]);
         for &i in own {
             let at = [i as usize % regions.width, i as usize / regions.width].map(|v| v as i32);
@@ -205,7 +203,10 @@ impl<'a> Placing<'a> {
             let contrast = f64::from(away(&below, &ink)).max(0.01);
             let noise = f64::from(flat.doubts[i].max(0.3) * LEVEL);
             let noise = noise.max(self.spreads[main as usize]);
-            let doubt = math::hypot(RENDERED, math::hypot(noise, f64::from(error.sqrt())) / contrast);
+            let doubt = math::hypot(
+                RENDERED,
+                math::hypot(noise, f64::from(error.sqrt())) / contrast,
+            );
             (share, if is_beyond { f64::INFINITY } else { doubt })
         };
         let places = (low[1]..high[1]).flat_map(|y| (low[0]..high[0]).map(move |x| [x, y]));

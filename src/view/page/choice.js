@@ -1,6 +1,6 @@
 // Statements on single marks: which one of another drawing they hold for, and the file without some of them.
 
-import { bounds, isArea, walks } from "./picture.js";
+import { bounds, isArea, shadeOf, walks } from "./picture.js";
 
 // Distance from which two marks are not taken for the same one, in widths and colours as `unlike` counts them.
 const STRANGER = 40;
@@ -70,7 +70,7 @@ export function drawn({ width, height, background, shade, shadows = [], marks })
 }
 
 function element(mark, id) {
-  const [, radius, color, opacity, , shade] = mark;
+  const [, radius, color, opacity] = mark, shade = shadeOf(mark);
   const paint = isArea(mark) ? "fill" : "stroke";
   const width = isArea(mark) ? "" : ` stroke-width="${short(2 * radius)}"`;
   const clear = opacity < 1 ? ` ${paint}-opacity="${Number(opacity.toFixed(3))}"` : "";

@@ -1,7 +1,7 @@
 // The colours of a drawing, in few groups.
 
 import { hex, levels } from "./edits.js";
-import { drawMarks, drawPage } from "./picture.js";
+import { drawMarks, drawPage, shadeOf } from "./picture.js";
 
 // Most groups that are shown.
 const MOST = 14;
@@ -63,7 +63,10 @@ function weighed(scene) {
   // A gradient has no colour to be changed: a number of none.
   const counted = (k) => hex([k & 255, (k >> 8) & 255, (k >> 16) & 255]);
   const number = new Map(colors.map((color, k) => [color, counted(k)]));
-  const numbered = ([points, radius, color, , kinds, shade]) => [points, radius, shade ? counted(colors.length) : number.get(color), 1, kinds];
+  const numbered = (mark) => {
+    const [points, radius, color, , kinds] = mark;
+    return [points, radius, shadeOf(mark) ? counted(colors.length) : number.get(color), 1, kinds];
+  };
   drawPage(context, { ...scene, shade: undefined, background: scene.background && number.get(scene.background) });
   drawMarks(context, marks.filter(([, , , opacity]) => opacity > 0.5).map(numbered));
   const weights = new Map(colors.map((color) => [color, 0.01]));

@@ -2,7 +2,7 @@
 // kinds], back to front as in the SVG; points are x, y, x, y, … in px of the picture, and the radius of an area is 0. Kinds
 // has a letter for each point, "o" on the path, "c" for the control point of a quadratic curve, "b" for one of a cubic curve
 // and "a" for a point of an arc between its ends, and then "z" if the path is closed, and so after the points of each ring of
-// an area. An area with a gradient has that as a sixth.
+// an area. An area with a gradient has that as a sixth, and one that is the outline of a line whose width varies has that line.
 
 // Longest side, px, at which drawing and target are compared: more takes time that a fit could use.
 const MAX_COMPARED = 1024;
@@ -42,7 +42,7 @@ function gradient(context, { axis, stops }) {
 export function drawMarks(context, marks) {
   context.lineCap = context.lineJoin = "round";
   for (const mark of marks) {
-    const [, radius, color, opacity, , shade] = mark;
+    const [, radius, color, opacity] = mark, shade = shadeOf(mark);
     context.globalAlpha = opacity;
     context.strokeStyle = context.fillStyle = shade ? gradient(context, shade) : color;
     context.lineWidth = 2 * radius;
@@ -54,10 +54,13 @@ export function drawMarks(context, marks) {
 }
 
 export const isArea = ([, radius]) => radius === 0;
+export const shadeOf = ([, , , , , more]) => (more?.axis ? more : undefined);
+// { points, kinds, widths } with a width for each point, px.
+export const lineOf = ([, , , , , more]) => (more?.widths ? more : undefined);
 
 // The numbers of areas and strokes among marks, in words.
 export function counted(marks) {
-  const areas = marks.filter(isArea).length, strokes = marks.length - areas;
+  const areas = marks.filter((mark) => isArea(mark) && !lineOf(mark)).length, strokes = marks.length - areas;
   const count = (number, name) => `${number} ${name}${number === 1 ? "" : "s"}`;
   const words = [areas && count(areas, "area"), (strokes || !areas) && count(strokes, "stroke")];
   return words.filter(Boolean).join(", ");

@@ -51,17 +51,15 @@ pub(super) fn run(session: &mut Session<'_>) -> Result<()> {
     // 3. Lines of what is left, level and upright.
     let straight = straight(session);
     adopt(session, straight, Each::MayLose);
-    if session.config.marks() == Marks::Areas {
-        fill_bands(&mut session.drawing);
-    }
     Ok(())
 }
 
-/// Makes bands areas that are filled, where the file is to have no strokes.
-fn fill_bands(drawing: &mut Drawing) {
+/// Makes bands, and lines whose width varies, areas that are filled, where the file is to have no strokes.
+pub(super) fn fill_bands(drawing: &mut Drawing) {
     let filled = |(i, mark): (usize, StrokeRef<'_>)| {
-        let band = Some(mark.to_mark()).filter(Mark::is_butt)?;
-        Some(Edit::replacing(i, vec![band.filled()], 0.0))
+        let mark = mark.to_mark();
+        let is_filled = mark.is_butt() || mark.is_varying();
+        is_filled.then(|| Edit::replacing(i, vec![mark.filled()], 0.0))
     };
     let filled: Vec<Edit> = drawing
         .free()
