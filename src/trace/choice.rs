@@ -145,8 +145,10 @@ impl<'a> Choice<'a> {
         self.keep_pens(&mut lines, &fills);
         let won = lines.iter().map(Option::is_some).collect();
         let mut chosen = self.chosen(&fills, lines, won, price).ok()?;
-        // Damage makes many lines of what is none.
-        let has_ink = is_clean && self.add_ink(&mut chosen, &placing, &fills);
+        // Damage makes many lines of what is none, and lines of one width need no other ones.
+        let has_ink = is_clean
+            && !self.may_be_lines()
+            && self.add_ink(&mut chosen, &placing, &fills);
         // What colours tell badly is to be fitted, and so are strokes that no region tells.
         if has_ink {
             // What lies on top of regions that lines of ink draw was laid along parts of those.
@@ -347,16 +349,59 @@ impl<'a> Choice<'a> {
         Some(drawn.collect())
     }
 
-    /// Draws shapes that no strokes draw by lines of varying width, if these have a shorter description.
+    /// Draws shapes that no strokes draw by lines of varying width, if these have a shorter description and are most of the drawing.
+    /// Returns whether there are such.
     fn add_ink(&self, chosen: &mut Chosen, placing: &Placing<'_>, fills: &[Fill<Ring>]) -> bool {
+        let ink = self.ink(&chosen.is_stroked, placing, fills);
+        // Among many things of other kinds, a few that are like lines are things, too.
+        let mut is_drawn = chosen.is_stroked.clone();
+        let drawn = ink.iter().flat_map(|(fills, _)| fills);
+        drawn.for_each(|fill| is_drawn[fill.region as usize] = true);
+        let areas = fills.iter().filter(|fill| !is_drawn[fill.region as usize]);
+        let areas = areas.filter(|fill| fill.size > TIP).count();
+        let strokes = self.votes.iter().zip(&chosen.strokes);
+        let even = strokes.filter(|(votes, stroke)| stroke.is_some() && !votes.is_empty());
+        let lines = ink.iter().map(|(_, lines)| lines.len()).sum::<usize>();
+        if lines == 0 || lines < areas + even.count() {
+            return false;
+        }
+        chosen.is_stroked = is_drawn;
+        for (fills, lines) in ink {
+            let gain: f32 = fills.iter().map(|fill| fill.gain).sum();
+            let gain = gain / (self.flat.mattes * lines.len()) as f32;
+            // The largest one, as tips are pale.
+            let fill = fills[0];
+            let (color, opacity) = areas::ink(&fill.color, self.flat.mattes);
+            chosen.strokes.extend(lines.into_iter().map(|line| {
+                let stroke = Stroke {
+                    path: line.path(),
+                    radius: line.radius(),
+                    radii: line.varying().unwrap_or_default(),
+                    cap: line.cap(),
+                    color,
+                    opacity,
+                };
+                Some((stroke, fill.rank, gain))
+            }));
+        }
+        true
+    }
+
+    /// The shapes that lines of varying width draw, and those: of what no strokes draw.
+    fn ink<'f>(
+        &self,
+        is_stroked: &[bool],
+        placing: &Placing<'_>,
+        fills: &'f [Fill<Ring>],
+    ) -> Vec<(Vec<&'f Fill<Ring>>, Vec<edge::Line>)> {
         let open: BTreeMap<u32, &Fill<Ring>> = fills
             .iter()
-            .filter(|fill| !chosen.is_stroked[fill.region as usize] && !fill.has_shades())
+            .filter(|fill| !is_stroked[fill.region as usize] && !fill.has_shades())
             .map(|fill| (fill.region, fill))
             .collect();
+        // 1. What comes apart where it is thin is one shape. Larger regions come first, as tips are pale.
         let is_one =
             |a: u32, b: u32| self.flat.label(a) == self.flat.label(b) || placing.is_tip_of(b, a);
-        // Larger ones first, as tips have not their colour.
         let mut regions: Vec<u32> = open.keys().copied().collect();
         regions.sort_by(|a, b| self.flat.size(*b).total_cmp(&self.flat.size(*a)));
         let shapes = self.flat.scattered(&regions, GAP, is_one);
@@ -369,43 +414,24 @@ impl<'a> Choice<'a> {
             sizes.sum::<f32>() > TIP
         };
         let shapes: Vec<Vec<&Fill<Ring>>> = shapes.filter(is_large).collect();
+        // 2. Their lines.
         let drawn = shapes.par_iter().map(|fills| placing.ink(fills));
         let drawn: Vec<Option<Vec<edge::Line>>> = drawn.collect();
-        // Lines that are not long are lines if no area has their colour.
-        let labels_of = |fills: &[&Fill<Ring>]| self.flat.label(fills[0].region);
+        // 3. Those that are long, and others if no area has their colour.
+        let label = |fills: &[&Fill<Ring>]| self.flat.label(fills[0].region);
         let pairs = shapes.iter().zip(&drawn);
         let areas = pairs.filter(|(_, lines)| lines.is_none());
-        let labels: BTreeSet<u16> = areas.map(|(fills, _)| labels_of(fills)).collect();
-        for (fills, lines) in shapes.into_iter().zip(drawn) {
-            let is_alone = !labels.contains(&labels_of(&fills));
-            let is_line = |lines: &Vec<edge::Line>| {
-                let lengths = lines.iter().map(edge::Line::slenderness);
-                let length = lengths.sum::<f64>() / lines.len() as f64;
-                length >= f64::from(if is_alone { LINE } else { SHORT })
-            };
-            let Some(lines) = lines.filter(is_line) else {
-                continue;
-            };
-            for fill in &fills {
-                chosen.is_stroked[fill.region as usize] = true;
-            }
-            let gain: f32 = fills.iter().map(|fill| fill.gain).sum();
-            let gain = gain / (self.flat.mattes * lines.len()) as f32;
-            let Some(fill) = fills.first() else { continue };
-            let (color, opacity) = areas::ink(&fill.color, self.flat.mattes);
-            for line in lines {
-                let stroke = Stroke {
-                    path: line.path(),
-                    radius: line.radius(),
-                    radii: line.varying().unwrap_or_default(),
-                    cap: line.cap(),
-                    color,
-                    opacity,
-                };
-                chosen.strokes.push(Some((stroke, fill.rank, gain)));
-            }
-        }
-        chosen.strokes.len() > self.strokes.len()
+        let labels: BTreeSet<u16> = areas.map(|(fills, _)| label(fills)).collect();
+        let pairs = shapes.into_iter().zip(drawn);
+        let lines = pairs.filter_map(|(fills, lines)| {
+            let lines = lines?;
+            let lengths = lines.iter().map(edge::Line::slenderness);
+            let length = lengths.sum::<f64>() / lines.len() as f64;
+            let is_alone = !labels.contains(&label(&fills));
+            let least = if is_alone { LINE } else { SHORT };
+            (length >= f64::from(least)).then_some((fills, lines))
+        });
+        lines.collect()
     }
 
     /// Forgets lines that are things rather than lines: a disc and a bar have as many numbers. A long line tells a pen, which draws

@@ -115,7 +115,7 @@ fn marks_of(
             let choice = Choice::of(&flat, strokes_of(&whole), pixels);
             choice.placed(price)
         });
-        if let Some(placed) = placed.filter(|placed| is_of_ink(placed)) {
+        if let Some(placed) = placed.filter(|placed| has_ink(placed)) {
             return placed;
         }
     }
@@ -155,13 +155,6 @@ fn marks_of(
 fn has_ink(traced: &[Traced]) -> bool {
     let mut strokes = traced.iter().filter_map(|t| t.mark.as_stroke());
     strokes.any(Stroke::is_varying)
-}
-
-/// True if half of the marks are lines of varying width.
-fn is_of_ink(traced: &[Traced]) -> bool {
-    let strokes = traced.iter().filter_map(|t| t.mark.as_stroke());
-    let varying = strokes.filter(|stroke| stroke.is_varying()).count();
-    varying > 0 && 2 * varying >= traced.len()
 }
 
 /// The lines of a picture on its canvas that lie between two rows of pixels, if crossings tell that there are such.
