@@ -126,9 +126,14 @@ impl<'a> Choice<'a> {
         Ok(stacked(chosen.strokes, areas, false))
     }
 
-    /// The marks that draw the picture where their edges are seen, in painting order; `None` where shapes come
+    /// The marks that draw the picture where their edges are seen, in painting order, lines of varying width among them if there
+    /// `may_be_ink`; `None` where shapes come
     /// apart, edges are long, lines are left that nothing draws, or colours do not tell where edges are.
-    pub(super) fn placed(&self, price: &(dyn Fn(&Mark) -> f32 + Sync)) -> Option<Vec<Traced>> {
+    pub(super) fn placed(
+        &self,
+        may_be_ink: bool,
+        price: &(dyn Fn(&Mark) -> f32 + Sync),
+    ) -> Option<Vec<Traced>> {
         // Where lines join blobs of their colour is no edge, so that descents find it.
         if self.flat.is_apart() || self.is_long() {
             return None;
@@ -146,7 +151,8 @@ impl<'a> Choice<'a> {
         let won = lines.iter().map(Option::is_some).collect();
         let mut chosen = self.chosen(&fills, lines, won, price).ok()?;
         // Damage makes many lines of what is none, and lines of one width need no other ones.
-        let has_ink = is_clean
+        let has_ink = may_be_ink
+            && is_clean
             && !self.may_be_lines()
             && self.add_ink(&mut chosen, &placing, &fills);
         // What colours tell badly is to be fitted, and so are strokes that no region tells.

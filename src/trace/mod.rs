@@ -113,7 +113,7 @@ fn marks_of(
         let flat = Flat::of(pixels, mattes, &whole, tracing);
         let placed = flat.and_then(|flat| {
             let choice = Choice::of(&flat, strokes_of(&whole), pixels);
-            choice.placed(price)
+            choice.placed(true, price)
         });
         if let Some(placed) = placed.filter(|placed| has_ink(placed)) {
             return placed;
@@ -130,7 +130,9 @@ fn marks_of(
             return strokes.into_iter().map(Traced::from).collect();
         };
         let choice = Choice::of(&flat, strokes, pixels);
-        let placed = tracing.may_place.then(|| choice.placed(price)).flatten();
+        let may_be_ink = round == 0 && parts.are_whole();
+        let placed = || choice.placed(may_be_ink, price);
+        let placed = tracing.may_place.then(placed).flatten();
         // A drawing of lines stays one where they are not found before a descent.
         let has_areas = |traced: &[Traced]| traced.iter().any(|t| t.mark.as_area().is_some());
         if let Some(placed) = &placed

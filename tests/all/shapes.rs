@@ -5,7 +5,7 @@ use std::fs;
 use crate::support::{committed, drawn, picture, rendered};
 use strokefit::fit::{Background, Config};
 use strokefit::math::Point;
-use strokefit::scene::{Area, Cap, Mark, Marks, Path, PathPoint, Scene, Shape, Stroke};
+use strokefit::scene::{Area, Cap, Mark, Marks, Path, PathPoint, Scene, Shape, Stage, Stroke};
 use strokefit::svg::{self, Group, WriteOptions};
 use strokefit::verify::{self, Size};
 
@@ -354,5 +354,45 @@ fn thin_lines_have_their_colours_and_widths() {
             "{text}"
         );
         assert!((width - 2.0).abs() < 0.1, "{text}");
+    }
+}
+
+#[test]
+fn lines_that_swell_come_back_one_by_one_through_their_crossing() {
+    let line = |[from, control, middle]: [(f64, f64); 3], end: [(f64, f64); 2]| {
+        let points = vec![
+            PathPoint::on(from.into()),
+            PathPoint::off(control.into()),
+            PathPoint::on(middle.into()),
+            PathPoint::off(end[0].into()),
+            PathPoint::on(end[1].into()),
+        ];
+        let path = Path::new(points, false).unwrap();
+        Stroke::varying(path, vec![0.6, 3.5, 0.6], [0.0; 3], 1.0).unwrap()
+    };
+    let lines = [
+        line(
+            [(10.0, 20.0), (40.0, 30.0), (75.0, 55.0)],
+            [(110.0, 80.0), (150.0, 85.0)],
+        ),
+        line(
+            [(12.0, 100.0), (45.0, 95.0), (85.0, 62.0)],
+            [(125.0, 29.0), (148.0, 15.0)],
+        ),
+    ];
+    let scene = Scene {
+        stages: vec![Stage::from_iter(lines)],
+        ..Scene::empty(160, 120, Some([1.0; 3]))
+    };
+    let drawing = svg::write(&scene, &WriteOptions::default());
+    let picture = verify::render(&drawing, Size::Scale(4.0), None).unwrap();
+    let text = drawn(&picture.reduced(160, 120), &Config::default()).svg();
+    let found = svg::read(&text).unwrap();
+    let varying: Vec<&Stroke> = found.strokes().filter(|s| s.is_varying()).collect();
+    assert_eq!((varying.len(), found.len()), (2, 2), "{text}");
+    for stroke in varying {
+        let [first, last] = [stroke.radii[0], stroke.radii[stroke.radii.len() - 1]];
+        assert!(first < 1.2 && last < 1.2, "{stroke:?}");
+        assert!((stroke.radius - 3.5).abs() < 0.3, "{stroke:?}");
     }
 }

@@ -107,8 +107,8 @@ pub(super) fn lines(
 const HOPELESS: [f64; 2] = [20.0, 1000.0];
 /// As [`HOPELESS`], times as long before lines are joined. The most is 2.
 const LOST: f64 = 3.0;
-/// As [`HOPELESS`] and [`LOST`], of lines of varying width. Of 14 drawings in ink, the most are 1.9 and 1.2.
-const HOPELESS_INK: f64 = 4.0;
+/// As [`HOPELESS`] and [`LOST`], of lines of varying width. Of 14 drawings in ink, the most are 7.4 and 1.2.
+const HOPELESS_INK: f64 = 10.0;
 const LOST_INK: f64 = 1.5;
 /// What has widths that no line has by as many nats, and more than [`LOST`], is none. Of lines in 63 clip arts, the most is 400.
 const WIDE: f64 = 600.0;
