@@ -367,8 +367,10 @@ impl<'a> Choice<'a> {
         let areas = areas.filter(|fill| fill.size > TIP).count();
         let strokes = self.votes.iter().zip(&chosen.strokes);
         let even = strokes.filter(|(votes, stroke)| stroke.is_some() && !votes.is_empty());
-        let lines = ink.iter().map(|(_, lines)| lines.len()).sum::<usize>();
-        if lines == 0 || lines < areas + even.count() {
+        let lines = ink.iter().flat_map(|(_, lines)| lines);
+        let (varying, others) = lines.partition::<Vec<&edge::Line>, _>(|l| l.varying().is_some());
+        let others = others.len() + areas + even.count();
+        if varying.is_empty() || varying.len() < others {
             return false;
         }
         chosen.is_stroked = is_drawn;
