@@ -63,7 +63,7 @@ pub(crate) enum Unwritable {
 }
 
 impl Scene {
-    /// The scene rounded to what its SVG with `precision` decimals (at most [`MAX_PRECISION`](super::MAX_PRECISION)) holds.
+    /// The scene rounded to what its SVG with `precision` decimals (at most [`MAX_PRECISION`]) holds.
     ///
     /// Coordinates and widths are rounded, widths kept at [`MIN_WIDTH`] or more; colours and
     /// opacities become multiples of 1/255; a path shorter than the precision becomes a dot; a closed path that its pen

@@ -1,6 +1,6 @@
 //! Drawings in ink, of lines whose width varies: which of them come back as one element each?
 //!
-//! [`kinds`] draws them, [`line`](mod@line) makes their pictures, and [`score`] compares what is found with the truth.
+//! `kinds` draws them, `line` makes their pictures, and `score` compares what is found with the truth.
 
 mod kinds;
 mod line;
