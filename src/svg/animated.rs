@@ -275,7 +275,12 @@ mod tests {
         let draw = |text: &str| render(text, Size::Scale(3.0), None).unwrap();
         // A mask rounds once more, to 8 bits.
         let plain = draw(&write(&scene, &WriteOptions::default()));
-        assert!(crate::metrics::psnr(&draw(&text), &plain).unwrap() > 50.0);
+        let db = crate::metrics::psnr(&draw(&text), &plain).unwrap();
+        assert!(
+            db > 50.0,
+            "{db} dB: {text}\n{}",
+            write(&scene, &WriteOptions::default())
+        );
     }
 
     #[test]

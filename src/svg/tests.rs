@@ -605,7 +605,13 @@ fn a_line_whose_width_varies_is_its_outline_with_what_that_is_of() {
             ..WriteOptions::default()
         };
         let text = write(&scene, &options);
-        let line = "strokefit:line=\"M4 20Q15 5 33 12.5\" strokefit:widths=\"0 5\"";
+        // The numbers of a layer are in its unit.
+        let line = match form {
+            Form::Smallest => {
+                "strokefit:line=\"M400 2000Q1500 500 3300 1250\" strokefit:widths=\"0 500\""
+            }
+            _ => "strokefit:line=\"M4 20Q15 5 33 12.5\" strokefit:widths=\"0 5\"",
+        };
         assert!(text.contains(line), "{text}");
         let effect = "offset_points=\"0,0 | 1,2.5\"";
         assert_eq!(text.contains(effect), form == Form::Powerstroke, "{text}");
