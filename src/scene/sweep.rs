@@ -86,12 +86,9 @@ impl Stroke {
         if !self.is_varying() {
             return vec![self.radius; points.len()];
         }
-        let first = points.iter().position(PathPoint::is_on).unwrap_or(0);
-        let mut kinds: Vec<PointKind> = points.iter().map(|p| p.kind).collect();
-        kinds.rotate_left(first);
-        let between = kinds.split(|kind| *kind == PointKind::On).skip(1);
+        let (first, kinds) = from_vertex(points);
         let mut radii = Vec::with_capacity(points.len());
-        for (i, run) in between.enumerate() {
+        for (i, run) in between(&kinds).enumerate() {
             let [from, to] = [i, i + 1].map(|k| self.radii[k % self.radii.len()]);
             // A control point of a quadratic curve is at the middle of its own curve.
             let share = |(j, kind): (usize, &PointKind)| match kind {
@@ -264,19 +261,28 @@ fn is_curve(piece: &PathPiece) -> bool {
     }
 }
 
-/// The pieces of a path with the radii at their ends.
-fn spans(path: &Path, radii: &[f64]) -> Vec<(PathPiece, [f64; 2])> {
-    let points = path.points();
+/// The index of the first vertex, and the kinds of all points from there on.
+fn from_vertex(points: &[PathPoint]) -> (usize, Vec<PointKind>) {
     let first = points.iter().position(PathPoint::is_on).unwrap_or(0);
     let mut kinds: Vec<PointKind> = points.iter().map(|p| p.kind).collect();
-    // A closed path goes on from its first vertex to itself.
     kinds.rotate_left(first);
+    (first, kinds)
+}
+
+/// The kinds of the points between each two vertices, the first of which is the first point.
+fn between(kinds: &[PointKind]) -> impl Iterator<Item = &[PointKind]> {
+    kinds.split(|kind| *kind == PointKind::On).skip(1)
+}
+
+/// The pieces of a path with the radii at their ends.
+fn spans(path: &Path, radii: &[f64]) -> Vec<(PathPiece, [f64; 2])> {
+    let (_, mut kinds) = from_vertex(path.points());
+    // A closed path goes on from its first vertex to itself.
     if path.is_closed() {
         kinds.push(PointKind::On);
     }
-    let between = kinds.split(|kind| *kind == PointKind::On).skip(1);
     // Each control point of a quadratic curve has one of its own; other pieces lie between vertices.
-    let counts = between.map(|run| match run.first() {
+    let counts = between(&kinds).map(|run| match run.first() {
         Some(PointKind::Quad) => run.len(),
         _ => 1,
     });

@@ -127,8 +127,8 @@ impl<'a> Choice<'a> {
     }
 
     /// The marks that draw the picture where their edges are seen, in painting order, lines of varying width among them if there
-    /// `may_be_ink`; `None` where shapes come
-    /// apart, edges are long, lines are left that nothing draws, or colours do not tell where edges are.
+    /// `may_be_ink`; `None` where shapes come apart, edges are long, lines are left that nothing draws, or colours do not tell where
+    /// edges are.
     pub(super) fn placed(
         &self,
         may_be_ink: bool,
@@ -155,13 +155,13 @@ impl<'a> Choice<'a> {
             && is_clean
             && !self.may_be_lines()
             && self.add_ink(&mut chosen, &placing, &fills);
-        // What colours tell badly is to be fitted, and so are strokes that no region tells.
         if has_ink {
             // What lies on top of regions that lines of ink draw was laid along parts of those.
             let strokes = chosen.strokes.iter_mut().zip(&self.votes);
             let orphans = strokes.filter(|(_, votes)| votes.is_empty());
             orphans.for_each(|(stroke, _)| *stroke = None);
         }
+        // What colours tell badly is to be fitted, and so are strokes that no region tells.
         let is_told = |(votes, stroke): (&Votes, &Option<_>)| !votes.is_empty() || stroke.is_none();
         let is_sure = self.votes.iter().zip(&chosen.strokes).all(is_told)
             && placing.is_sure(&fills, |fill| {

@@ -44,8 +44,8 @@ pub(super) struct Cut {
 
 impl<'a> QuadraticModel<'a> {
     /// The terrains of all paths whose points may come and go: of each stroke, and of each ring of an area. The points of a band
-    /// come and go in pairs, so bands have none; nor have outlines of lines whose width varies, which follow from those, and paths with cubic curves or arcs, whose points stay as many and of their
-    /// kinds.
+    /// come and go in pairs, so bands have none; nor have outlines of lines whose width varies, which follow from those, and paths with
+    /// cubic curves or arcs, whose points stay as many and of their kinds.
     pub(in crate::fit) fn all(survey: &'a Survey, strokes: &'a Strokes) -> Vec<Self> {
         let of_mark = |mark: usize| {
             let stroke = strokes.get(mark);

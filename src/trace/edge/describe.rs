@@ -254,6 +254,7 @@ fn around(
     places.sort_unstable();
     places.dedup();
     // 1. All segments that may pay, by their start.
+    let has_halves = open.iter().any(|sample| sample.half.is_some());
     let mut spans = Vec::new();
     for from in 0..places.len() - 1 {
         let mut failed = 0;
@@ -261,7 +262,10 @@ fn around(
             let (a, b) = (places[from], places[to]);
             let before = spans.len();
             let mut least = f64::INFINITY;
-            let halves = Halves::along(&open[a..=b]);
+            let halves = match has_halves {
+                true => Halves::along(&open[a..=b]),
+                false => None,
+            };
             // Their number at the joint.
             let of_halves = halves.map_or(0.0, |halves| 0.5 * halves.chi2 + PRICE);
             let fits = fits

@@ -50,6 +50,15 @@ struct Seen {
     rings: Vec<Ring>,
 }
 
+impl Seen {
+    /// Lines along middles that draw it, if edges tell where they are and their description is shorter than that of the rings.
+    fn lines(&self, middles: &[edge::Middle]) -> Option<Vec<edge::Line>> {
+        let lines = edge::lines(&self.field, &self.doubts, middles, &self.rings)?;
+        let [by_lines, by_rings] = lines.lengths;
+        (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
+    }
+}
+
 impl<'a> Placing<'a> {
     pub(in crate::trace) fn of(flat: &'a Flat<'a>) -> Self {
         Self {
@@ -133,27 +142,13 @@ impl<'a> Placing<'a> {
         fills: &[&Fill<Ring>],
         middles: &[edge::Middle],
     ) -> Option<Vec<edge::Line>> {
-        let Seen {
-            field,
-            doubts,
-            rings,
-        } = self.seen(fills)?;
-        let lines = edge::lines(&field, &doubts, middles, &rings)?;
-        let [by_lines, by_rings] = lines.lengths;
-        (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
+        self.seen(fills)?.lines(middles)
     }
 
     /// Lines of varying width that draw what some shapes show; `None` if these have a shorter description.
     pub(in crate::trace) fn ink(&self, fills: &[&Fill<Ring>]) -> Option<Vec<edge::Line>> {
-        let Seen {
-            field,
-            doubts,
-            rings,
-        } = self.inked(fills)?;
-        let middles = ink::middles(&field)?;
-        let lines = edge::lines(&field, &doubts, &middles, &rings)?;
-        let [by_lines, by_rings] = lines.lengths;
-        (by_lines < by_rings && lines.deviation < SURE).then_some(lines.lines)
+        let seen = self.inked(fills)?;
+        seen.lines(&ink::middles(&seen.field)?)
     }
 
     /// What is seen of some shapes in the ink of the first one, which may be pale on what that lies on where they are thin.
