@@ -158,6 +158,8 @@ fn rounded(mark: &Mark, precision: u8) -> Result<Mark, Unwritable> {
     }
     match mark.clone().filled() {
         Mark::Stroke(stroke) => Ok(round(&stroke, &grid).into()),
+        // The outline of a wide stroke may be out of range where its line is not.
+        Mark::Area(filled) if is_far(&filled.rings) => Err(Unwritable::OffPage),
         Mark::Area(filled) => area(&filled, &grid).map(Mark::from),
     }
 }
@@ -215,9 +217,10 @@ fn sweep(stroke: &Stroke, grid: &Grid) -> Result<Stroke, Unwritable> {
         radii: widths.iter().map(|width| 0.5 * width).collect(),
         ..plain
     };
-    match rounded.outline(grid).is_empty() {
-        true => Err(Unwritable::Invisible),
-        false => Ok(rounded),
+    match &rounded.outline(grid)[..] {
+        [] => Err(Unwritable::Invisible),
+        outline if is_far(outline) => Err(Unwritable::OffPage),
+        _ => Ok(rounded),
     }
 }
 
@@ -369,7 +372,6 @@ fn shaped(path: &Path, rounded: Path, grid: &Grid) -> Path {
 
 /// Refuses marks that are invisible at any precision.
 fn check(mark: &Mark) -> Result<(), Unwritable> {
-    let far = |p: Point| p.x.abs() > MAX_COORDINATE || p.y.abs() > MAX_COORDINATE;
     let radius = mark.radius();
     let is_thin = !mark.is_area() && radius <= 0.0;
     // NaN first: every comparison below would be false for it.
@@ -377,11 +379,17 @@ fn check(mark: &Mark) -> Result<(), Unwritable> {
         Err(Unwritable::NonFinite)
     } else if is_thin || quantum(mark.opacity()) == 0 {
         Err(Unwritable::Invisible)
-    } else if radius > MAX_COORDINATE || mark.paths().iter().flat_map(Path::hull).any(far) {
+    } else if radius > MAX_COORDINATE || is_far(mark.paths()) {
         Err(Unwritable::OffPage)
     } else {
         Ok(())
     }
+}
+
+/// True if a number of the paths is beyond the limit of the file.
+fn is_far(paths: &[Path]) -> bool {
+    let far = |p: Point| p.x.abs() > MAX_COORDINATE || p.y.abs() > MAX_COORDINATE;
+    paths.iter().flat_map(Path::hull).any(far)
 }
 
 fn quantized_color(rgb: Rgb) -> Rgb {
