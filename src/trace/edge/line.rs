@@ -32,6 +32,9 @@ const SHARPEST: f64 = 0.125;
 const STEEPEST: f64 = 0.95;
 /// Directions that differ by less, rad, need no join.
 const STRAIGHT: f64 = 1e-3;
+/// On the inner side those that differ by less, rad, are joined there: what is covered twice is an eighth of the cube of that, in
+/// squares of the radius, and it hardly turns with the line.
+const SHALLOW: f64 = 0.5;
 
 impl Line {
     /// A line of one width.
@@ -226,8 +229,10 @@ impl Line {
                     _ => Some(&segments[i - 1]),
                 };
                 if let Some(before) = before {
-                    let ways = [before.ways[before.ways.len() - 1], middle.ways[0]];
-                    places.extend(self.join(&middle.vertices[0], ways, side, &middle.radii[0]));
+                    let touches = [(before, before.vertices.len() - 1), (middle, 0)];
+                    let touches = touches.map(|(middle, k)| middle.touch(k, side));
+                    let radius = &middle.radii[0];
+                    places.extend(self.join(&middle.vertices[0], touches, side, radius));
                 }
                 let sides = middle.vertices.iter().zip(&middle.radii).enumerate();
                 places
@@ -295,17 +300,18 @@ impl Line {
         }
     }
 
-    /// What joins two segments on one side, between their ends there.
-    fn join(&self, at: &Vertex, [a, b]: [Vec2; 2], side: f64, radius: &Radius) -> Vec<Vertex> {
-        let angle = 2.0 * math::atan(a.cross(b) / (1.0 + a.dot(b)).max(1e-9));
-        if angle.abs() < STRAIGHT {
+    /// What joins two segments on one side, between the directions in which their discs touch it there. These differ where the
+    /// middle turns, and where the width changes more or less from there on.
+    fn join(&self, at: &Vertex, [m, n]: [Vec2; 2], side: f64, radius: &Radius) -> Vec<Vertex> {
+        let angle = 2.0 * math::atan(m.cross(n) / (1.0 + m.dot(n)).max(1e-9));
+        let is_inner = angle * side > 0.0;
+        if angle.abs() < if is_inner { SHALLOW } else { STRAIGHT } {
             return Vec::new();
         }
         // On the inner side both go to the middle, so that each is whole: where they overlap, they cover twice.
-        if angle * side > 0.0 {
+        if is_inner {
             return vec![*at];
         }
-        let [m, n] = [a, b].map(|way| side * normal(way));
         match self.cap {
             Cap::Round => fan(at, m, angle, radius),
             Cap::Butt => vec![at.moved((m + n) / (1.0 + m.dot(n)).max(SHARPEST), radius)],
