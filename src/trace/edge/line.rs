@@ -32,7 +32,7 @@ const SHARPEST: f64 = 0.125;
 const STEEPEST: f64 = 0.95;
 /// Directions that differ by less, rad, need no join.
 const STRAIGHT: f64 = 1e-3;
-/// On the inner side those that differ by less, rad, are joined there: what is covered twice is an eighth of the cube of that, in
+/// On the inner side of a line whose width varies, those that differ by less, rad, are joined there: what is covered twice is an eighth of the cube of that, in
 /// squares of the radius, and it hardly turns with the line.
 const SHALLOW: f64 = 0.5;
 
@@ -305,7 +305,11 @@ impl Line {
     fn join(&self, at: &Vertex, [m, n]: [Vec2; 2], side: f64, radius: &Radius) -> Vec<Vertex> {
         let angle = 2.0 * math::atan(m.cross(n) / (1.0 + m.dot(n)).max(1e-9));
         let is_inner = angle * side > 0.0;
-        if angle.abs() < if is_inner { SHALLOW } else { STRAIGHT } {
+        let least = match is_inner && !self.is_even {
+            true => SHALLOW,
+            false => STRAIGHT,
+        };
+        if angle.abs() < least {
             return Vec::new();
         }
         // On the inner side both go to the middle, so that each is whole: where they overlap, they cover twice.
