@@ -45,10 +45,9 @@ pub(super) fn steps(bend: f64, flatness: f64) -> usize {
 
 /// As [`steps`], with another limit.
 pub(super) fn steps_at_most(most: usize, bend: f64, flatness: f64) -> usize {
-    // Before it is a whole number: the bend may be too large for one.
-    let steps = ((bend / (4.0 * flatness)).sqrt() - 1e-3).min(most as f64);
+    let steps = (bend / (4.0 * flatness)).sqrt() - 1e-3;
     // `ceil` is a call where the target has no instruction for it.
-    let whole = steps as usize;
+    let whole = (steps as usize).min(most);
     (whole + usize::from(steps > whole as f64)).clamp(1, most)
 }
 

@@ -159,7 +159,7 @@ fn rounded(mark: &Mark, precision: u8) -> Result<Mark, Unwritable> {
     match mark.clone().filled() {
         Mark::Stroke(stroke) => Ok(round(&stroke, &grid).into()),
         // The outline of a wide stroke may be out of range where its line is not.
-        Mark::Area(filled) if is_far(&filled.rings) => Err(Unwritable::OffPage),
+        Mark::Area(filled) if !mark.is_area() && is_far(&filled.rings) => Err(Unwritable::OffPage),
         Mark::Area(filled) => area(&filled, &grid).map(Mark::from),
     }
 }

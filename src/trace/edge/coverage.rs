@@ -478,6 +478,10 @@ mod tests {
         ]
     }
 
+    fn is_swelling(ring: &Ring) -> bool {
+        matches!(ring, Ring::Line(line) if !line.is_even)
+    }
+
     fn whole(ring: &Ring) -> Band {
         let all: Vec<usize> = (0..ring.segments()).collect();
         Band::of(ring, &all, &[], PAGE)
@@ -488,10 +492,12 @@ mod tests {
         for ring in rings() {
             let band = whole(&ring);
             let shares = Coverage::of(&ring, &band).shares();
+            // Pieces of edges are at least 1e-9 of these long, and may be longer than what is left of their pixel.
+            let hair = if is_swelling(&ring) { 1e-8 } else { 1e-9 };
             assert!(
                 shares
                     .iter()
-                    .all(|share| (-1e-7..1.0 + 1e-7).contains(share)),
+                    .all(|share| (-hair..1.0 + hair).contains(share)),
                 "{shares:?}"
             );
             // Both sides of the edges are in the band.
@@ -517,8 +523,8 @@ mod tests {
         for ring in rings() {
             let band = whole(&ring);
             let values = ring.values();
-            // The polygon of a round end turns with the line, and so do the sides where the width changes.
-            let share = if matches!(ring, Ring::Line(_)) {
+            // The polygon of a round end turns with the line.
+            let tolerance = if matches!(ring, Ring::Line(_)) {
                 0.03
             } else {
                 1e-4
@@ -530,9 +536,9 @@ mod tests {
                 .for_each(|(i, k, slope)| slopes[i][k] += slope);
             const STEP: f64 = 1e-6;
             for k in 0..values.len() {
-                // A bulge moves its arc by many px.
+                // The sides of a swelling arc turn with its bulge, which moves it by many px.
                 let largest = slopes.iter().fold(1.0, |l: f64, s| l.max(s[k].abs()));
-                let tolerance = share * largest;
+                let tolerance = tolerance * if is_swelling(&ring) { largest } else { 1.0 };
                 let moved = [-STEP, STEP].map(|step| {
                     let mut values = values.clone();
                     values[k] += step;

@@ -32,8 +32,8 @@ const SHARPEST: f64 = 0.125;
 const STEEPEST: f64 = 0.95;
 /// Directions that differ by less, rad, need no join.
 const STRAIGHT: f64 = 1e-3;
-/// On the inner side of a line whose width varies, those that differ by less, rad, are joined there: what is covered twice is an eighth of the cube of that, in
-/// squares of the radius, and it hardly turns with the line.
+/// On the inner side of a line whose width varies, those that differ by less, rad, are joined there: what is covered twice is an
+/// eighth of the cube of that, in squares of the radius, and it hardly turns with the line.
 const SHALLOW: f64 = 0.5;
 
 impl Line {
