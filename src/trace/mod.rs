@@ -107,18 +107,12 @@ fn marks_of(
         Some(areas) => strokes::strokes(pixels, areas, parts, mattes, tracing),
         None => Vec::new(),
     };
-    // Lines that swell come apart into lines and blobs, too.
-    if tracing.may_place && marks != Marks::Strokes && !parts.are_whole() {
+    let swelling = || {
         let whole = Parts::whole(pixels.width);
-        let flat = Flat::of(pixels, mattes, &whole, tracing);
-        let placed = flat.and_then(|flat| {
-            let choice = Choice::of(&flat, strokes_of(&whole), pixels);
-            choice.placed(true, price)
-        });
-        if let Some(placed) = placed.filter(|placed| has_ink(placed)) {
-            return placed;
-        }
-    }
+        let flat = Flat::of(pixels, mattes, &whole, tracing)?;
+        let choice = Choice::of(&flat, strokes_of(&whole), pixels);
+        choice.placed(true, price).filter(|placed| has_ink(placed))
+    };
     let mut round = 0;
     loop {
         let strokes = strokes_of(&parts);
@@ -142,8 +136,16 @@ fn marks_of(
         }
         match choice.fitted(price) {
             Ok(traced) => return placed.filter(|_| has_areas(&traced)).unwrap_or(traced),
-            // What strokes do not draw stays with what it came apart from.
             Err(lines) => {
+                // Lines that swell come apart into lines and blobs, too. Lines of one width between blobs are drawn as such.
+                if round == 0
+                    && tracing.may_place
+                    && !parts.are_whole()
+                    && let Some(placed) = swelling()
+                {
+                    return placed;
+                }
+                // What strokes do not draw stays with what it came apart from.
                 let pixels = |line| flat.pixels_of(line).collect();
                 let lines = lines.into_iter().map(|(shape, line)| (shape, pixels(line)));
                 parts.join(lines.collect(), round < MOST_ROUNDS);
