@@ -97,7 +97,7 @@ def test_numpy_numbers_are_numbers(waves: np.ndarray) -> None:
         ("background", "whitish", "'whitish' is not a background: give auto, none"),
         ("colors", 0, "colors is 0: give a whole number from 1 to 4096"),
         ("palette", ["rot"], "'rot' is not a colour"),
-        ("form", "tiny", "'tiny' is not a form: give plain, smallest, css or outlines"),
+        ("form", "tiny", "'tiny' is not a form: give plain, smallest, css, powerstroke or outlines"),
         ("group", "hue", "'hue' is not a grouping"),
         ("order", "random", "'random' is not an order: give fitted or travel"),
         ("pens", "0", "'0' is not a width of a pen"),
