@@ -33,8 +33,9 @@ const STEEPEST: f64 = 0.95;
 /// Directions that differ by less, rad, need no join.
 const STRAIGHT: f64 = 1e-3;
 /// On the inner side of a line whose width varies, those that differ by less, rad, are joined there: what is covered twice is an
-/// eighth of the cube of that, in squares of the radius, and it hardly turns with the line.
-const SHALLOW: f64 = 0.5;
+/// eighth of the cube of that, in squares of the radius, and it hardly turns with the line. Of 177 lines in ink, 65 are whole with 0.2,
+/// and 63 with 0.5; 68 with 0.001, but hatching loses 1.1 dB.
+const SHALLOW: f64 = 0.2;
 
 impl Line {
     /// A line of one width.
